@@ -1,0 +1,48 @@
+//! What can go wrong, one variant for each thing that a caller can act on.
+
+use std::path::{Path, PathBuf};
+
+/// A result whose error is vglare's own.
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// Everything that can go wrong, with the file and the reason in its text.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A photo could not be read: missing, damaged, or of a kind that vglare does not read.
+    #[error("cannot read the photo {}: {reason}", path.display())]
+    ReadPhoto { path: PathBuf, reason: String },
+
+    /// A picture could not be written. Nothing is left behind under its name.
+    #[error("cannot write {}: {reason}", path.display())]
+    Write { path: PathBuf, reason: String },
+
+    /// The output exists already and `--force` was not given.
+    #[error("{} exists already; --force overwrites it", path.display())]
+    Exists { path: PathBuf },
+
+    /// A scene, light or lens file says something that it must not.
+    #[error("{}: {reason}", path.display())]
+    SceneFile { path: PathBuf, reason: String },
+
+    /// No lens preset has this name.
+    #[error("no lens preset is called {name:?}; there are {}", known.join(", "))]
+    UnknownPreset { name: String, known: Vec<String> },
+}
+
+impl Error {
+    /// A [`Error::ReadPhoto`] from anything that can say why.
+    pub fn read_photo(path: &Path, reason: impl ToString) -> Self {
+        Self::ReadPhoto { path: path.to_owned(), reason: reason.to_string() }
+    }
+
+    /// A [`Error::Write`] from anything that can say why.
+    pub fn write(path: &Path, reason: impl ToString) -> Self {
+        Self::Write { path: path.to_owned(), reason: reason.to_string() }
+    }
+
+    /// A [`Error::SceneFile`] from anything that can say why.
+    pub fn scene_file(path: &Path, reason: impl ToString) -> Self {
+        Self::SceneFile { path: path.to_owned(), reason: reason.to_string() }
+    }
+}

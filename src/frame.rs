@@ -1,0 +1,108 @@
+//! The picture plane: where each pixel lies.
+//!
+//! The origin is the centre of the picture, x points right, y up, and the unit is half the picture's height, so that a
+//! scene means the same at every resolution. Rows of pixels are counted from the top. This is the one place that turns
+//! one into the other.
+
+use glam::DVec2;
+
+/// A rectangle of pixels; (0, 0) is the top left pixel of the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Window {
+    /// Column of the left-most pixel; negative where the window begins left of the picture.
+    pub x: i32,
+    /// Row of the top pixel; negative where the window begins above the picture.
+    pub y: i32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+impl Window {
+    /// How many pixels the window holds.
+    pub fn pixels(&self) -> usize {
+        self.width as usize * self.height as usize
+    }
+}
+
+/// The picture (OpenEXR's display window), and the window of pixels that is stored (its data window).
+///
+/// The picture alone sets the coordinates; the window may lie inside it, reach beyond it or miss it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Frame {
+    /// Columns of the picture.
+    pub width: u32,
+    /// Rows of the picture.
+    pub height: u32,
+    /// The pixels that are stored.
+    pub window: Window,
+}
+
+impl Frame {
+    /// A picture of `width` × `height` pixels, all of them stored.
+    pub fn full(width: u32, height: u32) -> Self {
+        Self { width, height, window: Window { x: 0, y: 0, width, height } }
+    }
+
+    /// The same picture with another window of pixels.
+    pub fn with_window(self, window: Window) -> Self {
+        Self { window, ..self }
+    }
+
+    /// x of the centre of column `i`, which may be fractional: (2i + 1 − W) / H.
+    pub fn x(&self, i: f64) -> f64 {
+        (2.0 * i + 1.0 - f64::from(self.width)) / f64::from(self.height)
+    }
+
+    /// y of the centre of row `j`, counted from the top: (H − 2j − 1) / H.
+    pub fn y(&self, j: f64) -> f64 {
+        (f64::from(self.height) - 2.0 * j - 1.0) / f64::from(self.height)
+    }
+
+    /// The centre of pixel (i, j) of the picture.
+    pub fn position(&self, i: f64, j: f64) -> DVec2 {
+        DVec2::new(self.x(i), self.y(j))
+    }
+
+    /// The column and row, fractional, whose centre is `position`: the inverse of [`Frame::position`].
+    pub fn pixel(&self, position: DVec2) -> DVec2 {
+        let h = f64::from(self.height);
+        DVec2::new((position.x * h + f64::from(self.width) - 1.0) / 2.0, (h - 1.0 - position.y * h) / 2.0)
+    }
+
+    /// The side of a pixel, 2 / H.
+    pub fn pixel_size(&self) -> f64 {
+        2.0 / f64::from(self.height)
+    }
+
+    /// The smallest and the largest centre of the stored pixels, as (left bottom, right top).
+    pub fn bounds(&self) -> (DVec2, DVec2) {
+        let Window { x, y, width, height } = self.window;
+        let (left, top) = (f64::from(x), f64::from(y));
+        let (right, bottom) = (left + f64::from(width) - 1.0, top + f64::from(height) - 1.0);
+        (self.position(left, bottom), self.position(right, top))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_pixel_is_top_left_and_the_unit_is_half_the_height() {
+        let frame = Frame::full(4, 2);
+        assert_eq!(frame.position(0.0, 0.0), DVec2::new(-1.5, 0.5));
+        assert_eq!(frame.position(3.0, 1.0), DVec2::new(1.5, -0.5));
+        assert_eq!(frame.bounds(), (DVec2::new(-1.5, -0.5), DVec2::new(1.5, 0.5)));
+    }
+
+    #[test]
+    fn pixel_undoes_position_also_outside_the_picture() {
+        let frame = Frame::full(1921, 1081);
+        for (i, j) in [(0.0, 0.0), (1920.0, 1080.0), (-300.25, 2000.5)] {
+            let back = frame.pixel(frame.position(i, j));
+            assert!((back - DVec2::new(i, j)).length() < 1e-9, "{back}");
+        }
+    }
+}

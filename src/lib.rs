@@ -1,0 +1,27 @@
+//! Veiling glare for HDR photographs.
+//!
+//! A lens scatters bright light into many faint, wide blobs. vglare models each blob (a *ghost*) as a bell, expands
+//! the sum of all of them once in a two-dimensional Fourier series on the GPU, and evaluates the series at every
+//! pixel, so that a pixel's cost does not depend on how many ghosts there are.
+//!
+//! The data flows through the modules in this order:
+//!
+//! | module | from → to |
+//! | --- | --- |
+//! | [`photo`] | a file → linear light, RGBA f32, and back |
+//! | [`frame`] | pixels ↔ the picture plane |
+//! | [`scene`] | photo → lights → ghosts; presets and scene files |
+//! | [`series`] | bells, their Fourier coefficients and their tails, in f64 |
+//! | [`plan`] | ghosts, picture, tolerance → period, degree, kept terms, evaluator, predicted error |
+//! | [`gpu`] | the plan's tables and passes on OpenGL 4.3; the only folder with `unsafe` |
+//! | [`renderer`] | the main path: spectrum → field → normalise → composite |
+//! | [`mod@reference`] | the definition of the field in f64, by direct sum and by direct series |
+//! | [`compare`] | the one error metric |
+
+pub mod error;
+pub mod frame;
+pub mod photo;
+pub mod scene;
+pub mod series;
+
+pub use error::{Error, Result};

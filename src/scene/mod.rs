@@ -1,0 +1,44 @@
+//! What glares: lights, the lens that scatters them, and the ghosts that result.
+
+use glam::DVec2;
+
+use crate::series::Bell;
+
+/// A bright source.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Light {
+    /// Its centre on the picture plane; may lie outside the picture.
+    pub position: DVec2,
+    /// Radiance times area, RGB, in the photo's unit times half picture heights squared.
+    pub flux: [f64; 3],
+    /// Root mean square distance of its light from its centre along one axis, in half picture heights; 0 is a point.
+    pub size: f64,
+}
+
+/// How a lens turns any light into one ghost.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LensGhost {
+    /// The bell's profile.
+    pub bell: Bell,
+    /// The ghost's centre is `along` times the light's position: 1 is on the light, −1 opposite it across the axis.
+    pub along: f64,
+    /// Sizes in x and y, for a light that is a point (σ for a Gaussian).
+    pub size: DVec2,
+    /// Colour, RGB; multiplies the light's.
+    pub tint: [f64; 3],
+    /// Share of the light's flux that the ghost carries.
+    pub share: f64,
+}
+
+/// One bell on the picture plane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ghost {
+    /// The bell's profile.
+    pub bell: Bell,
+    /// Its centre.
+    pub center: DVec2,
+    /// Sizes in x and y (σ for a Gaussian).
+    pub size: DVec2,
+    /// Radiance at its centre, RGB.
+    pub radiance: [f64; 3],
+}
