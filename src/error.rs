@@ -28,6 +28,22 @@ pub enum Error {
     /// No lens preset has this name.
     #[error("no lens preset is called {name:?}; there are {}", known.join(", "))]
     UnknownPreset { name: String, known: Vec<String> },
+
+    /// f32 cannot be as exact as asked in this scene.
+    #[error("a tolerance of {asked:.1e} is below what 32-bit floats can give here: {floor:.1e}")]
+    ToleranceBelowFloor { asked: f64, floor: f64 },
+
+    /// What was asked of the plan cannot be had.
+    #[error("no plan: {0}")]
+    Plan(String),
+
+    /// No backend gives OpenGL 4.3.
+    #[error("no OpenGL 4.3 context could be had\n  {}", reasons.join("\n  "))]
+    NoContext { reasons: Vec<String> },
+
+    /// The driver refused something that it should support; a shader that does not compile, for example.
+    #[error("OpenGL failed: {0}")]
+    Gl(String),
 }
 
 impl Error {

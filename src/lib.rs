@@ -18,9 +18,14 @@
 //! | [`mod@reference`] | the definition of the field in f64, by direct sum and by direct series |
 //! | [`compare`] | the one error metric |
 
+pub mod compare;
 pub mod error;
 pub mod frame;
+pub mod gpu;
 pub mod photo;
+pub mod plan;
+pub mod reference;
+pub mod renderer;
 pub mod scene;
 pub mod series;
 

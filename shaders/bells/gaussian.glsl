@@ -1,0 +1,15 @@
+// The Gaussian exp(-x^2 / 2 sigma^2), a product of one factor for each axis (docs/math.md, "Gaussian").
+
+const float TWO_PI_SQUARED = 19.7392088022;
+const float SQRT_TWO_PI = 2.50662827463;
+
+// Mean coefficient of harmonic n of the periodised bell whose sigma is `size` periods.
+float bell_coefficient(float n, float size) {
+    float turn = n * size;
+    return SQRT_TWO_PI * size * exp(-TWO_PI_SQUARED * turn * turn);
+}
+
+// The bell at an offset from its centre that is measured in sizes.
+float bell_value(vec2 offset) {
+    return exp(-0.5 * dot(offset, offset));
+}

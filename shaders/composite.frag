@@ -1,0 +1,39 @@
+// The photo with its glare. Alpha is left as it is.
+#include EVALUATOR
+
+layout(binding = UNIT_PHOTO) uniform sampler2D photo;
+layout(binding = UNIT_RANGE) uniform sampler2D range;
+layout(std140, binding = BINDING_PASS) uniform Pass {
+    vec4 scale;      // the field's unit, RGB
+    vec4 light_gain; // what a light keeps of itself, RGB; 1 unless light is taken from the photo
+    vec4 luminance;  // weights of R, G, B; w: the luminance from which on a pixel is a light
+    float strength;
+    uint normalize;  // 0 none, 1 clamp, 2 min/max
+    uint pad0;
+    uint pad1;
+};
+layout(location = 0) out vec4 picture;
+
+vec3 normalized(vec3 value) {
+    if (normalize == 1u) {
+        return clamp(value, 0.0, 1.0);
+    }
+    if (normalize == 2u) {
+        vec2 ends = texelFetch(range, ivec2(0), 0).xy * vec2(1.0, -1.0); // (min, max)
+        float span = ends.y - ends.x;
+        return span > 0.0 ? (value - ends.x) / span : vec3(0.0); // a flat field has no contrast to stretch
+    }
+    return value;
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec3 added = strength * normalized(scale.rgb * glare(pixel));
+#ifdef GLARE_ALONE
+    picture = vec4(added, 1.0);
+#else
+    vec4 light = texelFetch(photo, pixel, 0);
+    bool is_light = dot(luminance.rgb, light.rgb) >= luminance.w && !any(isinf(light.rgb));
+    picture = vec4(light.rgb * (is_light ? light_gain.rgb : vec3(1.0)) + added, light.a);
+#endif
+}

@@ -1,0 +1,33 @@
+// `direct`: the bells themselves, summed at every pixel (rex's non-parametric case). The cost of a pixel grows with K.
+#include BELL
+
+struct Ghost {
+    vec2 center;
+    vec2 inverse_size;
+    vec4 weight; // radiance; w unused
+};
+layout(std430, binding = BINDING_GHOSTS) readonly buffer Ghosts {
+    Ghost ghosts[];
+};
+layout(std140, binding = 1) uniform Direct {
+    ivec2 corner;   // of the tile, in pixels of the picture
+    ivec2 size;     // of the picture, in pixels
+    uint ghost_count;
+};
+
+vec3 glare(ivec2 pixel) {
+    ivec2 p = corner + pixel;
+    // Integers up to the division, so that no pixel's centre is off by more than one rounding.
+    vec2 position = vec2(ivec2(2 * p.x + 1 - size.x, size.y - 2 * p.y - 1)) / float(size.y);
+    vec3 sum = vec3(0.0);
+    for (uint base = 0u; base < ghost_count; base += 64u) {
+        vec3 batch = vec3(0.0);
+        uint last = min(base + 64u, ghost_count);
+        for (uint k = base; k < last; ++k) {
+            Ghost ghost = ghosts[k];
+            batch += ghost.weight.rgb * bell_value((position - ghost.center) * ghost.inverse_size);
+        }
+        sum += batch;
+    }
+    return sum;
+}

@@ -1,0 +1,85 @@
+//! The photo with its glare, or the glare alone.
+
+use bytemuck::{Pod, Zeroable};
+
+use super::field::Source;
+use super::layout::{PASS, PHOTO};
+use super::resource::{Buffer, Scratch, Texel, Texture};
+use super::runner::Runner;
+use crate::Result;
+
+/// The composite's uniforms; as in `composite.frag`.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Composite {
+    /// The field's unit, RGB.
+    pub scale: [f32; 4],
+    /// What a light keeps of itself, RGB.
+    pub light_gain: [f32; 4],
+    /// Weights of R, G, B in luminance, then the luminance from which on a pixel is a light.
+    pub luminance: [f32; 4],
+    /// What the normalised glare is multiplied by.
+    pub strength: f32,
+    /// 0 none, 1 clamp to 0..1, 2 stretch to 0..1 by the range.
+    pub normalize: u32,
+    pub pad: [u32; 2],
+}
+const _: () = assert!(size_of::<Composite>() == 64);
+
+/// Draws the picture.
+pub(crate) struct CompositePass {
+    photo: Scratch,
+    picture: Scratch,
+    uniforms: Buffer<Composite>,
+}
+
+impl CompositePass {
+    pub fn new(runner: &Runner) -> Result<Self> {
+        Ok(Self {
+            photo: Scratch::default(),
+            picture: Scratch::default(),
+            uniforms: Buffer::new(runner.device(), 1)?,
+        })
+    }
+
+    /// A tile of the photo on the device, to be filled and then composited.
+    pub fn photo(&mut self, runner: &Runner, width: u32, height: u32) -> Result<&Texture> {
+        self.photo.get(runner.device(), Texel::Rgba, width, height)
+    }
+
+    /// The tile that [`CompositePass::photo`] holds, with its glare.
+    pub fn draw(&mut self, runner: &Runner, source: Source, settings: &Composite) -> Result<&Texture> {
+        let photo = self.photo.current().ok_or_else(|| crate::Error::Gl("no photo to composite".into()))?;
+        photo.bind(PHOTO);
+        let (width, height) = (photo.level_width(0), photo.level_height(0));
+        Self::run(&mut self.picture, &mut self.uniforms, runner, &source.defines(), settings, [width, height])
+    }
+
+    /// What [`CompositePass::draw`] would add to the photo.
+    pub fn draw_glare(
+        &mut self,
+        runner: &Runner,
+        source: Source,
+        settings: &Composite,
+        size: [u32; 2],
+    ) -> Result<&Texture> {
+        let mut defines = source.defines();
+        defines.push(("GLARE_ALONE", "1"));
+        Self::run(&mut self.picture, &mut self.uniforms, runner, &defines, settings, size)
+    }
+
+    fn run<'a>(
+        picture: &'a mut Scratch,
+        uniforms: &mut Buffer<Composite>,
+        runner: &Runner,
+        defines: &[(&str, &str)],
+        settings: &Composite,
+        size: [u32; 2],
+    ) -> Result<&'a Texture> {
+        uniforms.store(&[*settings])?;
+        uniforms.bind_uniform(PASS);
+        let picture = picture.get(runner.device(), Texel::Rgba, size[0], size[1])?;
+        runner.draw("composite.frag", defines, picture, 0)?;
+        Ok(picture)
+    }
+}

@@ -1,0 +1,178 @@
+//! OpenGL 4.3 without a window: EGL where there is a driver, OSMesa where there is none.
+
+mod egl;
+mod osmesa;
+
+use std::fmt;
+use std::rc::Rc;
+
+use glow::HasContext as _;
+
+use crate::{Error, Result};
+
+/// The version of OpenGL that every pass is written for.
+pub const REQUIRED: (u8, u8) = (4, 3);
+
+/// A way to a GL context.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, clap::ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Backend {
+    /// EGL on a device or without any surface: the graphics driver, or Mesa's software renderer.
+    Egl,
+    /// OSMesa, Mesa's software renderer in memory: needs neither driver nor display.
+    #[value(name = "osmesa")]
+    OsMesa,
+}
+
+impl Backend {
+    /// Every backend, in the order in which [`Device::open`] tries them.
+    pub const ALL: [Self; 2] = [Self::Egl, Self::OsMesa];
+
+    /// The Debian packages that bring this backend.
+    pub fn packages(self) -> &'static str {
+        match self {
+            Self::Egl => "libegl1 libgl1-mesa-dri",
+            Self::OsMesa => "libosmesa6",
+        }
+    }
+}
+
+impl fmt::Display for Backend {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Egl => "egl",
+            Self::OsMesa => "osmesa",
+        })
+    }
+}
+
+/// What keeps a context alive and current; dropped after the last GL object.
+trait Platform {
+    /// How the context came about, e.g. "EGL device" or "OSMesa".
+    fn route(&self) -> String;
+}
+
+/// A current GL context on this thread. GL objects hold it by [`Rc`], so it outlives them all.
+pub struct Device {
+    gl: glow::Context,
+    info: Info,
+    platform: Box<dyn Platform>,
+}
+
+/// What the driver says about itself.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct Info {
+    /// The backend in use.
+    pub backend: Backend,
+    /// How the context came about.
+    pub route: String,
+    /// GL_RENDERER.
+    pub renderer: String,
+    /// GL_VENDOR.
+    pub vendor: String,
+    /// GL_VERSION.
+    pub version: String,
+    /// Whether the renderer is known to run on the CPU.
+    pub software: bool,
+    /// The limits that the passes meet.
+    pub limits: Limits,
+}
+
+/// The driver's limits that the passes meet.
+#[derive(Debug, Clone, Copy, serde::Serialize)]
+pub struct Limits {
+    /// Largest width and height of a texture.
+    pub texture_size: u32,
+    /// Largest width and height of a viewport.
+    pub viewport: [u32; 2],
+    /// Largest shader storage block, bytes.
+    pub storage_block: u64,
+    /// Shader storage bindings of one program.
+    pub storage_bindings: u32,
+    /// Work groups of one dispatch, per axis.
+    pub work_groups: [u32; 3],
+    /// Invocations of one work group.
+    pub work_group_invocations: u32,
+    /// Shared memory of one work group, bytes.
+    pub shared_memory: u32,
+}
+
+impl Device {
+    /// Opens the first of `backends` that gives OpenGL 4.3 or later and makes it current on this thread.
+    ///
+    /// # Errors
+    /// [`Error::NoContext`] with the reason for each backend that failed and the packages that would mend it.
+    pub fn open(backends: &[Backend]) -> Result<Rc<Self>> {
+        let mut reasons = Vec::new();
+        for &backend in backends {
+            match Self::open_one(backend) {
+                Ok(device) => return Ok(Rc::new(device)),
+                Err(reason) => {
+                    reasons.push(format!("{backend}: {reason} (on Debian: apt-get install {})", backend.packages()));
+                }
+            }
+        }
+        Err(Error::NoContext { reasons })
+    }
+
+    fn open_one(backend: Backend) -> Result<Self, String> {
+        let (gl, platform): (glow::Context, Box<dyn Platform>) = match backend {
+            Backend::Egl => egl::open()?,
+            Backend::OsMesa => osmesa::open()?,
+        };
+        let version = gl.version();
+        if (version.major, version.minor) < (u32::from(REQUIRED.0), u32::from(REQUIRED.1)) {
+            return Err(format!("gives OpenGL {}.{} and 4.3 is needed", version.major, version.minor));
+        }
+        let info = describe(&gl, backend, platform.route());
+        Ok(Self { gl, info, platform })
+    }
+
+    /// The GL functions.
+    pub(in crate::gpu) fn gl(&self) -> &glow::Context {
+        &self.gl
+    }
+
+    /// What the driver says about itself.
+    pub fn info(&self) -> &Info {
+        &self.info
+    }
+
+    /// Waits until the GL has done all that it was asked to.
+    pub fn finish(&self) {
+        unsafe { self.gl.finish() }
+    }
+}
+
+impl fmt::Debug for Device {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Device").field("info", &self.info).field("platform", &self.platform.route()).finish()
+    }
+}
+
+fn describe(gl: &glow::Context, backend: Backend, route: String) -> Info {
+    let text = |name| unsafe { gl.get_parameter_string(name) };
+    let number = |name| unsafe { gl.get_parameter_i32(name) }.max(0) as u32;
+    let indexed = |name, index| unsafe { gl.get_parameter_indexed_i32(name, index) }.max(0) as u32;
+    let mut viewport = [0; 2];
+    unsafe { gl.get_parameter_i32_slice(glow::MAX_VIEWPORT_DIMS, &mut viewport) };
+    let renderer = text(glow::RENDERER);
+    let software = ["llvmpipe", "softpipe", "swrast", "SwiftShader"].iter().any(|name| renderer.contains(name));
+    Info {
+        backend,
+        route,
+        vendor: text(glow::VENDOR),
+        version: text(glow::VERSION),
+        software,
+        renderer,
+        limits: Limits {
+            texture_size: number(glow::MAX_TEXTURE_SIZE),
+            viewport: viewport.map(|side| side.max(0) as u32),
+            storage_block: unsafe { gl.get_parameter_i64(glow::MAX_SHADER_STORAGE_BLOCK_SIZE) }.max(0) as u64,
+            storage_bindings: number(glow::MAX_SHADER_STORAGE_BUFFER_BINDINGS),
+            work_groups: [0, 1, 2].map(|axis| indexed(glow::MAX_COMPUTE_WORK_GROUP_COUNT, axis)),
+            work_group_invocations: number(glow::MAX_COMPUTE_WORK_GROUP_INVOCATIONS),
+            shared_memory: number(glow::MAX_COMPUTE_SHARED_MEMORY_SIZE),
+        },
+    }
+}

@@ -1,0 +1,121 @@
+//! The four ways to the field. Each readies what its GLSL function `glare(pixel)` reads for one tile of the picture;
+//! `field`, `composite` and `probe` then include that function.
+
+use super::harmonics::Harmonics;
+use super::layout::{
+    DirectGhost, GHOSTS, HARMONICS_X, HARMONICS_Y, KNOTS_X, KNOTS_Y, Knot, LATTICE, PROFILES, STRIPS,
+};
+use super::resource::{Buffer, Scratch, Texel};
+use super::runner::Runner;
+use super::spectrum::Spectrum;
+use crate::Result;
+
+/// The uniform block that `direct` has beside its pass's own; as in `evaluators/direct.glsl`.
+const DIRECT: super::layout::Binding = ("", 1);
+
+/// A lattice over one tile, and where the tile's pixels lie on it.
+pub(crate) struct LatticeTile<'a> {
+    /// Phases of the lattice's columns and rows, in 2⁻³² of a period.
+    pub node_phases: [&'a [u32]; 2],
+    /// Phase from one node to the next.
+    pub steps: [u32; 2],
+    /// Where each column and each row of the tile lies.
+    pub knots: [&'a [Knot]; 2],
+}
+
+/// What the evaluators keep from frame to frame.
+pub(crate) struct Evaluators {
+    harmonics_x: Harmonics,
+    harmonics_y: Harmonics,
+    profiles: Scratch,
+    lattice: Scratch,
+    strips: Scratch,
+    knots_x: Buffer<Knot>,
+    knots_y: Buffer<Knot>,
+    ghosts: Buffer<DirectGhost>,
+    direct: Buffer<[i32; 8]>,
+    ghost_count: usize,
+}
+
+impl Evaluators {
+    pub fn new(runner: &Runner) -> Result<Self> {
+        let device = runner.device();
+        Ok(Self {
+            harmonics_x: Harmonics::new(runner, HARMONICS_X)?,
+            harmonics_y: Harmonics::new(runner, HARMONICS_Y)?,
+            profiles: Scratch::default(),
+            lattice: Scratch::default(),
+            strips: Scratch::default(),
+            knots_x: Buffer::new(device, 0)?,
+            knots_y: Buffer::new(device, 0)?,
+            ghosts: Buffer::new(device, 0)?,
+            direct: Buffer::new(device, 1)?,
+            ghost_count: 0,
+        })
+    }
+
+    /// Uploads the ghosts that `direct` sums.
+    pub fn set_ghosts(&mut self, ghosts: &[DirectGhost]) -> Result<()> {
+        self.ghost_count = ghosts.len();
+        self.ghosts.store(ghosts)
+    }
+
+    /// Readies `direct` for a tile whose first pixel is `corner` in a picture of `size` pixels.
+    pub fn direct(&mut self, corner: [i32; 2], size: [i32; 2]) -> Result<()> {
+        self.direct.store(&[[corner[0], corner[1], size[0], size[1], self.ghost_count as i32, 0, 0, 0]])?;
+        self.direct.bind_uniform(DIRECT);
+        self.ghosts.bind_storage(GHOSTS);
+        Ok(())
+    }
+
+    /// Readies `series` for pixels at these phases of columns and rows, in 2⁻³² of a period.
+    pub fn series(&mut self, runner: &Runner, phases: [&[u32]; 2], spectrum: &Spectrum) -> Result<()> {
+        let degree = spectrum.degree();
+        spectrum.bind();
+        self.harmonics_x.fill(runner, phases[0], degree[0], None)?;
+        self.harmonics_y.fill(runner, phases[1], degree[1], None)
+    }
+
+    /// Readies `rows` for pixels at these phases of columns and rows.
+    pub fn rows(&mut self, runner: &Runner, phases: [&[u32]; 2], spectrum: &Spectrum) -> Result<()> {
+        self.profiles(runner, phases, [None; 2], spectrum)
+    }
+
+    /// Readies `grid`: the series on the lattice by rows, then its columns stretched to every row of the tile.
+    pub fn grid(&mut self, runner: &Runner, tile: &LatticeTile<'_>, spectrum: &Spectrum) -> Result<()> {
+        let device = runner.device();
+        self.profiles(runner, tile.node_phases, tile.steps.map(Some), spectrum)?;
+        let [columns, rows] = tile.node_phases.map(|phases| phases.len() as u32);
+        let lattice = self.lattice.get(device, Texel::Rgba, columns, rows)?;
+        // Here `field` draws the lattice; elsewhere it draws the picture.
+        runner.draw("field.frag", &[("EVALUATOR", "\"evaluators/rows.glsl\"")], lattice, 0)?;
+
+        self.knots_x.store(tile.knots[0])?;
+        self.knots_y.store(tile.knots[1])?;
+        self.knots_x.bind_storage(KNOTS_X);
+        self.knots_y.bind_storage(KNOTS_Y);
+        lattice.bind(LATTICE);
+        let strips = self.strips.get(device, Texel::Rgba, columns, tile.knots[1].len() as u32)?;
+        runner.draw("strips.frag", &[], strips, 0)?;
+        strips.bind(STRIPS);
+        Ok(())
+    }
+
+    fn profiles(
+        &mut self,
+        runner: &Runner,
+        phases: [&[u32]; 2],
+        steps: [Option<u32>; 2],
+        spectrum: &Spectrum,
+    ) -> Result<()> {
+        let degree = spectrum.degree();
+        spectrum.bind();
+        self.harmonics_y.fill(runner, phases[1], degree[1], steps[1])?;
+        self.harmonics_y.bind();
+        let (width, height) = (2 * (degree[0] + 1), phases[1].len() as u32);
+        let profiles = self.profiles.get(runner.device(), Texel::Rgba, width, height)?;
+        runner.draw("profiles.frag", &[], profiles, 0)?;
+        profiles.bind(PROFILES);
+        self.harmonics_x.fill(runner, phases[0], degree[0], steps[0])
+    }
+}

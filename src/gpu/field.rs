@@ -1,0 +1,64 @@
+//! The passes that ask an evaluator for the field: at every pixel of a tile, or at a list of its pixels.
+
+use super::layout::PROBES;
+use super::resource::{Buffer, Scratch, Texel, Texture};
+use super::runner::Runner;
+use crate::Result;
+
+/// A GLSL function `glare(pixel)`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Source {
+    /// Its file in `shaders/`.
+    pub evaluator: &'static str,
+    /// The bell that it includes, if any.
+    pub bell: Option<&'static str>,
+}
+
+impl Source {
+    /// The field as [`FieldPass`] stored it.
+    pub const STORED: Self = Self { evaluator: "\"evaluators/stored.glsl\"", bell: None };
+
+    /// What a shader is specialised with to include this function.
+    pub fn defines(self) -> Vec<(&'static str, &'static str)> {
+        let mut defines = vec![("EVALUATOR", self.evaluator)];
+        defines.extend(self.bell.map(|bell| ("BELL", bell)));
+        defines
+    }
+}
+
+/// Stores the field, and looks it up at probes.
+pub(crate) struct FieldPass {
+    field: Scratch,
+    probed: Scratch,
+    probes: Buffer<[i32; 2]>,
+}
+
+impl FieldPass {
+    pub fn new(runner: &Runner) -> Result<Self> {
+        Ok(Self {
+            field: Scratch::default(),
+            probed: Scratch::default(),
+            probes: Buffer::new(runner.device(), 0)?,
+        })
+    }
+
+    /// The field of a tile of `width` × `height` pixels, in units of its scale.
+    pub fn draw(&mut self, runner: &Runner, source: Source, width: u32, height: u32) -> Result<&Texture> {
+        let field = self.field.get(runner.device(), Texel::Rgba, width, height)?;
+        runner.draw("field.frag", &source.defines(), field, 0)?;
+        Ok(field)
+    }
+
+    /// The field at pixels of the tile, counted from its corner, in units of its scale.
+    pub fn probe(&mut self, runner: &Runner, source: Source, pixels: &[[i32; 2]]) -> Result<Vec<[f32; 3]>> {
+        if pixels.is_empty() {
+            return Ok(Vec::new());
+        }
+        self.probes.store(pixels)?;
+        self.probes.bind_storage(PROBES);
+        let probed = self.probed.get(runner.device(), Texel::Rgba, pixels.len() as u32, 1)?;
+        runner.draw("probe.frag", &source.defines(), probed, 0)?;
+        let values = probed.read_level(0);
+        Ok(values.chunks_exact(4).map(|value| [value[0], value[1], value[2]]).collect())
+    }
+}

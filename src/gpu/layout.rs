@@ -1,0 +1,79 @@
+//! What Rust and GLSL must agree on: binding numbers, and the structs that cross over.
+//!
+//! Structs hold groups of four f32 or u32 only, so std140 and std430 lay them out as `repr(C)` does. Their sizes are
+//! asserted here at compile time; a test has a shader echo them.
+
+use bytemuck::{Pod, Zeroable};
+
+/// A binding number and the name by which shaders know it.
+pub(crate) type Binding = (&'static str, u32);
+
+/// Uniform blocks.
+pub(crate) const PASS: Binding = ("BINDING_PASS", 0);
+
+/// Shader storage blocks.
+pub(crate) const GHOSTS: Binding = ("BINDING_GHOSTS", 0);
+pub(crate) const PARTIALS: Binding = ("BINDING_PARTIALS", 1);
+pub(crate) const SPECTRUM: Binding = ("BINDING_SPECTRUM", 2);
+pub(crate) const OFFSETS: Binding = ("BINDING_OFFSETS", 3);
+pub(crate) const PHASES: Binding = ("BINDING_PHASES", 4);
+pub(crate) const PROBES: Binding = ("BINDING_PROBES", 5);
+pub(crate) const KNOTS_X: Binding = ("BINDING_KNOTS_X", 6);
+pub(crate) const KNOTS_Y: Binding = ("BINDING_KNOTS_Y", 7);
+
+/// Texture units.
+pub(crate) const PHOTO: Binding = ("UNIT_PHOTO", 0);
+pub(crate) const FIELD: Binding = ("UNIT_FIELD", 1);
+pub(crate) const HARMONICS_X: Binding = ("UNIT_HARMONICS_X", 2);
+pub(crate) const HARMONICS_Y: Binding = ("UNIT_HARMONICS_Y", 3);
+pub(crate) const PROFILES: Binding = ("UNIT_PROFILES", 4);
+pub(crate) const LATTICE: Binding = ("UNIT_LATTICE", 5);
+pub(crate) const STRIPS: Binding = ("UNIT_STRIPS", 6);
+pub(crate) const RANGE: Binding = ("UNIT_RANGE", 7);
+/// Where textures are made and filled, so that no pass's own units are disturbed meanwhile.
+pub(crate) const WORKBENCH: Binding = ("UNIT_WORKBENCH", 8);
+
+/// Every binding, for the head of every shader.
+pub(crate) const BINDINGS: [Binding; 17] = [
+    PASS, GHOSTS, PARTIALS, SPECTRUM, OFFSETS, PHASES, PROBES, KNOTS_X, KNOTS_Y, PHOTO, FIELD, HARMONICS_X, HARMONICS_Y,
+    PROFILES, LATTICE, STRIPS, RANGE,
+];
+
+/// One ghost as the spectrum's shader reads it.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct SpectralGhost {
+    /// Centre in 2⁻³² of a period.
+    pub phase: [u32; 2],
+    /// Size in periods.
+    pub size: [f32; 2],
+    /// Radiance, per colour in units of the field's scale.
+    pub weight: [f32; 3],
+    pub pad: f32,
+}
+const _: () = assert!(size_of::<SpectralGhost>() == 32);
+
+/// One ghost as the direct sum reads it.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct DirectGhost {
+    /// Centre on the picture plane.
+    pub center: [f32; 2],
+    /// One over the size.
+    pub inverse_size: [f32; 2],
+    /// Radiance, per colour in units of the field's scale.
+    pub weight: [f32; 3],
+    pub pad: f32,
+}
+const _: () = assert!(size_of::<DirectGhost>() == 32);
+
+/// Where a column or a row lies between the lattice's nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Knot {
+    /// The first of the four nodes that count.
+    pub first: u32,
+    /// How far past the second of them, 0 to 1.
+    pub fraction: f32,
+}
+const _: () = assert!(size_of::<Knot>() == 8);

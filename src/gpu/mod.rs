@@ -1,0 +1,29 @@
+//! The passes on OpenGL 4.3, and the only folder with `unsafe`.
+//!
+//! | file | what it does |
+//! | --- | --- |
+//! | `context` | a device: EGL without a window, or OSMesa |
+//! | `layout` | what Rust and GLSL must agree on |
+//! | `resource`, `shader` | GL objects that free themselves; shaders put together from `shaders/` |
+//! | `runner`, `timer` | runs passes and times them |
+//! | `spectrum` | ghosts → A, B, C, D |
+//! | `harmonics`, `evaluators` | spectrum → the function `glare(pixel)` of each evaluator |
+//! | `field`, `range`, `composite` | that function → the field, its range, the picture |
+//! | `copy` | the yardstick of the bench |
+
+pub(crate) mod composite;
+mod context;
+pub(crate) mod copy;
+pub(crate) mod evaluators;
+pub(crate) mod field;
+mod harmonics;
+pub(crate) mod layout;
+pub(crate) mod range;
+pub(crate) mod resource;
+pub(crate) mod runner;
+mod shader;
+pub(crate) mod spectrum;
+mod timer;
+
+pub use context::{Backend, Device, Info, Limits};
+pub use timer::PassTime;

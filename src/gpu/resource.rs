@@ -1,0 +1,372 @@
+//! The four kinds of GL object that vglare uses. Each frees itself, and keeps the device alive until then.
+
+use std::marker::PhantomData;
+use std::rc::Rc;
+
+use bytemuck::Pod;
+use glow::{HasContext as _, PixelPackData, PixelUnpackData};
+
+use super::context::Device;
+use super::layout::{Binding, WORKBENCH};
+use crate::{Error, Result};
+
+fn refused(what: &str) -> impl FnOnce(String) -> Error {
+    move |reason| Error::Gl(format!("{what}: {reason}"))
+}
+
+/// A buffer of `T` on the device, for shader storage or uniforms.
+pub(crate) struct Buffer<T> {
+    device: Rc<Device>,
+    raw: glow::Buffer,
+    length: usize,
+    element: PhantomData<T>,
+}
+
+impl<T: Pod> Buffer<T> {
+    /// A buffer for `length` elements, of no defined content. One element is kept even for none: GL has no empty block.
+    pub fn new(device: &Rc<Device>, length: usize) -> Result<Self> {
+        let gl = device.gl();
+        let bytes = i32::try_from(length.max(1) * size_of::<T>())
+            .map_err(|_| Error::Gl(format!("a buffer of {length} elements is beyond 2 GiB")))?;
+        let raw = unsafe { gl.create_buffer() }.map_err(refused("buffer"))?;
+        unsafe {
+            gl.bind_buffer(glow::SHADER_STORAGE_BUFFER, Some(raw));
+            gl.buffer_data_size(glow::SHADER_STORAGE_BUFFER, bytes, glow::DYNAMIC_DRAW);
+        }
+        Ok(Self { device: device.clone(), raw, length, element: PhantomData })
+    }
+
+    /// A buffer that holds a copy of `data`.
+    pub fn from_slice(device: &Rc<Device>, data: &[T]) -> Result<Self> {
+        let buffer = Self::new(device, data.len())?;
+        buffer.write(data);
+        Ok(buffer)
+    }
+
+    /// Puts `data` in, growing the buffer where it is too small.
+    pub fn store(&mut self, data: &[T]) -> Result<()> {
+        if data.len() > self.length {
+            *self = Self::new(&self.device.clone(), data.len())?;
+        }
+        self.write(data);
+        Ok(())
+    }
+
+    fn write(&self, data: &[T]) {
+        let gl = self.device.gl();
+        unsafe {
+            gl.bind_buffer(glow::SHADER_STORAGE_BUFFER, Some(self.raw));
+            gl.buffer_sub_data_u8_slice(glow::SHADER_STORAGE_BUFFER, 0, bytemuck::cast_slice(data));
+        }
+    }
+
+    /// The first `length` elements, after waiting for the device.
+    #[cfg(test)]
+    pub fn read(&self, length: usize) -> Vec<T> {
+        let mut data = vec![T::zeroed(); length.min(self.length)];
+        let gl = self.device.gl();
+        unsafe {
+            gl.memory_barrier(glow::BUFFER_UPDATE_BARRIER_BIT);
+            gl.bind_buffer(glow::SHADER_STORAGE_BUFFER, Some(self.raw));
+            gl.get_buffer_sub_data(glow::SHADER_STORAGE_BUFFER, 0, bytemuck::cast_slice_mut(&mut data));
+        }
+        data
+    }
+
+    /// How many elements there is room for.
+    pub fn length(&self) -> usize {
+        self.length
+    }
+
+    /// Binds the whole buffer as a shader storage block.
+    pub fn bind_storage(&self, (_, index): Binding) {
+        unsafe { self.device.gl().bind_buffer_base(glow::SHADER_STORAGE_BUFFER, index, Some(self.raw)) }
+    }
+
+    /// Binds the whole buffer as a uniform block.
+    pub fn bind_uniform(&self, (_, index): Binding) {
+        unsafe { self.device.gl().bind_buffer_base(glow::UNIFORM_BUFFER, index, Some(self.raw)) }
+    }
+}
+
+impl<T> Drop for Buffer<T> {
+    fn drop(&mut self) {
+        unsafe { self.device.gl().delete_buffer(self.raw) }
+    }
+}
+
+/// What a texture's texels are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Texel {
+    /// Two f32.
+    Rg,
+    /// Four f32.
+    Rgba,
+}
+
+impl Texel {
+    fn internal_format(self) -> u32 {
+        match self {
+            Self::Rg => glow::RG32F,
+            Self::Rgba => glow::RGBA32F,
+        }
+    }
+
+    fn format(self) -> u32 {
+        match self {
+            Self::Rg => glow::RG,
+            Self::Rgba => glow::RGBA,
+        }
+    }
+
+    fn channels(self) -> usize {
+        match self {
+            Self::Rg => 2,
+            Self::Rgba => 4,
+        }
+    }
+}
+
+/// A texture without filtering, each of its levels with a framebuffer to draw into.
+///
+/// Row 0 is the picture's top row throughout vglare: textures are filled, drawn and read top row first, and each
+/// row's place on the picture plane comes from [`crate::frame::Frame`]. Nothing is ever flipped off screen.
+pub(crate) struct Texture {
+    device: Rc<Device>,
+    raw: glow::Texture,
+    framebuffers: Vec<glow::Framebuffer>,
+    texel: Texel,
+    width: u32,
+    height: u32,
+}
+
+impl Texture {
+    /// A texture of one level.
+    pub fn new(device: &Rc<Device>, texel: Texel, width: u32, height: u32) -> Result<Self> {
+        Self::with_levels(device, texel, width, height, 1)
+    }
+
+    /// A texture whose sides are halved, rounded down, from each of its `levels` to the next.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the driver cannot hold it.
+    pub fn with_levels(device: &Rc<Device>, texel: Texel, width: u32, height: u32, levels: u32) -> Result<Self> {
+        let most = device.info().limits.texture_size;
+        if width == 0 || height == 0 || width > most || height > most {
+            return Err(Error::Gl(format!("a texture of {width}x{height} is not within 1 to {most}")));
+        }
+        let gl = device.gl();
+        let raw = unsafe { gl.create_texture() }.map_err(refused("texture"))?;
+        // Whole before anything can fail, so that an early return frees what there is.
+        let mut texture = Self { device: device.clone(), raw, framebuffers: Vec::new(), texel, width, height };
+        texture.bind(WORKBENCH);
+        unsafe {
+            for (name, value) in [
+                (glow::TEXTURE_MIN_FILTER, glow::NEAREST_MIPMAP_NEAREST),
+                (glow::TEXTURE_MAG_FILTER, glow::NEAREST),
+                (glow::TEXTURE_WRAP_S, glow::CLAMP_TO_EDGE),
+                (glow::TEXTURE_WRAP_T, glow::CLAMP_TO_EDGE),
+            ] {
+                gl.tex_parameter_i32(glow::TEXTURE_2D, name, value as i32);
+            }
+            gl.tex_storage_2d(
+                glow::TEXTURE_2D,
+                levels as i32,
+                texel.internal_format(),
+                width as i32,
+                height as i32,
+            );
+        }
+        for level in 0..levels {
+            let framebuffer = unsafe { gl.create_framebuffer() }.map_err(refused("framebuffer"))?;
+            texture.framebuffers.push(framebuffer);
+            let status = unsafe {
+                gl.bind_framebuffer(glow::FRAMEBUFFER, Some(framebuffer));
+                let (target, attachment) = (glow::FRAMEBUFFER, glow::COLOR_ATTACHMENT0);
+                gl.framebuffer_texture_2d(target, attachment, glow::TEXTURE_2D, Some(raw), level as i32);
+                gl.check_framebuffer_status(glow::FRAMEBUFFER)
+            };
+            if status != glow::FRAMEBUFFER_COMPLETE {
+                return Err(Error::Gl(format!("a {texel:?} texture of {width}x{height} cannot be drawn into: {status:#x}")));
+            }
+        }
+        Ok(texture)
+    }
+
+    /// Width of a level.
+    pub fn level_width(&self, level: u32) -> u32 {
+        (self.width >> level).max(1)
+    }
+
+    /// Height of a level.
+    pub fn level_height(&self, level: u32) -> u32 {
+        (self.height >> level).max(1)
+    }
+
+    /// Levels that there are.
+    pub fn levels(&self) -> u32 {
+        self.framebuffers.len() as u32
+    }
+
+    /// Whether the texture has this kind of texel and these sides.
+    pub fn is(&self, texel: Texel, width: u32, height: u32) -> bool {
+        (self.texel, self.width, self.height) == (texel, width, height)
+    }
+
+    /// Binds the texture to a unit.
+    pub fn bind(&self, (_, unit): Binding) {
+        let gl = self.device.gl();
+        unsafe {
+            gl.active_texture(glow::TEXTURE0 + unit);
+            gl.bind_texture(glow::TEXTURE_2D, Some(self.raw));
+        }
+    }
+
+    /// Binds one level to a unit, as the only one that a shader can see: another may then be drawn into meanwhile.
+    pub fn bind_level(&self, binding: Binding, level: u32) {
+        self.bind(binding);
+        let gl = self.device.gl();
+        unsafe {
+            gl.tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_BASE_LEVEL, level as i32);
+            gl.tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_MAX_LEVEL, level as i32);
+        }
+    }
+
+    /// Sets every channel of level 0 to one value.
+    pub fn clear(&self, value: f32) {
+        self.target(0);
+        unsafe { self.device.gl().clear_buffer_f32_slice(glow::COLOR, 0, &[value; 4]) }
+    }
+
+    /// Makes a level the target of drawing, all of it. Sets all state that drawing depends on.
+    pub fn target(&self, level: u32) {
+        let gl = self.device.gl();
+        unsafe {
+            gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffers[level as usize]));
+            gl.viewport(0, 0, self.level_width(level) as i32, self.level_height(level) as i32);
+            for capability in [glow::BLEND, glow::DEPTH_TEST, glow::SCISSOR_TEST, glow::CULL_FACE, glow::STENCIL_TEST] {
+                gl.disable(capability);
+            }
+            gl.color_mask(true, true, true, true);
+        }
+    }
+
+    /// Fills the top left of the texture from rows of `stride` RGBA pixels.
+    pub fn write(&self, pixels: &[[f32; 4]], stride: usize, width: u32, height: u32) {
+        assert_eq!(self.texel, Texel::Rgba);
+        assert!(pixels.len() >= (height as usize - 1) * stride + width as usize && width as usize <= stride);
+        let gl = self.device.gl();
+        self.bind(WORKBENCH);
+        unsafe {
+            gl.bind_buffer(glow::PIXEL_UNPACK_BUFFER, None);
+            gl.pixel_store_i32(glow::UNPACK_ROW_LENGTH, stride as i32);
+            gl.tex_sub_image_2d(
+                glow::TEXTURE_2D,
+                0,
+                0,
+                0,
+                width as i32,
+                height as i32,
+                glow::RGBA,
+                glow::FLOAT,
+                PixelUnpackData::Slice(Some(bytemuck::cast_slice(pixels))),
+            );
+            gl.pixel_store_i32(glow::UNPACK_ROW_LENGTH, 0);
+        }
+    }
+
+    /// Reads the top left of level 0 into rows of `stride` RGBA pixels, after waiting for the device.
+    pub fn read(&self, pixels: &mut [[f32; 4]], stride: usize, width: u32, height: u32) {
+        assert_eq!(self.texel, Texel::Rgba);
+        assert!(pixels.len() >= (height as usize - 1) * stride + width as usize && width as usize <= stride);
+        unsafe { self.device.gl().pixel_store_i32(glow::PACK_ROW_LENGTH, stride as i32) };
+        self.read_raw(0, bytemuck::cast_slice_mut(pixels), width, height);
+        unsafe { self.device.gl().pixel_store_i32(glow::PACK_ROW_LENGTH, 0) };
+    }
+
+    /// A whole level, its channels one after the other, after waiting for the device.
+    pub fn read_level(&self, level: u32) -> Vec<f32> {
+        let (width, height) = (self.level_width(level), self.level_height(level));
+        let mut values = vec![0.0; width as usize * height as usize * self.texel.channels()];
+        self.read_raw(level, bytemuck::cast_slice_mut(&mut values), width, height);
+        values
+    }
+
+    fn read_raw(&self, level: u32, bytes: &mut [u8], width: u32, height: u32) {
+        let gl = self.device.gl();
+        unsafe {
+            gl.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
+            gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffers[level as usize]));
+            gl.read_pixels(
+                0,
+                0,
+                width as i32,
+                height as i32,
+                self.texel.format(),
+                glow::FLOAT,
+                PixelPackData::Slice(Some(bytes)),
+            );
+        }
+    }
+}
+
+impl Drop for Texture {
+    fn drop(&mut self) {
+        let gl = self.device.gl();
+        unsafe {
+            for &framebuffer in &self.framebuffers {
+                gl.delete_framebuffer(framebuffer);
+            }
+            gl.delete_texture(self.raw);
+        }
+    }
+}
+
+/// A texture that is made when it is first needed and again when its size changes.
+#[derive(Default)]
+pub(crate) struct Scratch(Option<Texture>);
+
+impl Scratch {
+    /// The texture, of this kind and size; its content is kept only while these stay.
+    pub fn get(&mut self, device: &Rc<Device>, texel: Texel, width: u32, height: u32) -> Result<&Texture> {
+        if !self.0.as_ref().is_some_and(|texture| texture.is(texel, width, height)) {
+            // The old one is freed first, so that both never stand in memory together.
+            self.0 = None;
+            self.0 = Some(Texture::new(device, texel, width, height)?);
+        }
+        Ok(self.0.as_ref().expect("made above"))
+    }
+
+    /// The texture as it was last made.
+    pub fn current(&self) -> Option<&Texture> {
+        self.0.as_ref()
+    }
+}
+
+/// The empty vertex array that core profiles want bound for a draw call.
+pub(crate) struct Triangle {
+    device: Rc<Device>,
+    raw: glow::VertexArray,
+}
+
+impl Triangle {
+    pub fn new(device: &Rc<Device>) -> Result<Self> {
+        let raw = unsafe { device.gl().create_vertex_array() }.map_err(refused("vertex array"))?;
+        Ok(Self { device: device.clone(), raw })
+    }
+
+    /// Runs the current program's fragment shader once for each texel of the current target.
+    pub fn draw(&self) {
+        let gl = self.device.gl();
+        unsafe {
+            gl.bind_vertex_array(Some(self.raw));
+            gl.draw_arrays(glow::TRIANGLES, 0, 3);
+        }
+    }
+}
+
+impl Drop for Triangle {
+    fn drop(&mut self) {
+        unsafe { self.device.gl().delete_vertex_array(self.raw) }
+    }
+}

@@ -1,0 +1,119 @@
+//! Runs passes: programs compiled when first needed, a debug group and, where asked for, a time for each.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::rc::Rc;
+
+use glow::HasContext as _;
+
+use super::context::Device;
+use super::resource::{Texture, Triangle};
+use super::shader::{Define, Program};
+use super::timer::{PassTime, Timer};
+use crate::Result;
+
+/// What every pass needs to run.
+pub(crate) struct Runner {
+    device: Rc<Device>,
+    triangle: Triangle,
+    programs: RefCell<HashMap<String, Rc<Program>>>,
+    timer: RefCell<Timer>,
+}
+
+impl Runner {
+    pub fn new(device: &Rc<Device>) -> Result<Self> {
+        Ok(Self {
+            device: device.clone(),
+            triangle: Triangle::new(device)?,
+            programs: RefCell::default(),
+            timer: RefCell::new(Timer::new(device)?),
+        })
+    }
+
+    /// The device that the passes run on.
+    pub fn device(&self) -> &Rc<Device> {
+        &self.device
+    }
+
+    /// Whether each pass is timed from now on. Timing waits for the device before and after each pass.
+    pub fn set_timing(&self, timing: bool) {
+        self.timer.borrow_mut().set_enabled(timing);
+    }
+
+    /// The times gathered since they were last taken.
+    pub fn take_times(&self) -> Vec<PassTime> {
+        self.timer.borrow_mut().take()
+    }
+
+    /// Draws a level of `target` with a fragment shader of `shaders/`.
+    pub fn draw(&self, path: &str, defines: &[Define<'_>], target: &Texture, level: u32) -> Result<()> {
+        let program = self.program(path, defines, Program::fragment)?;
+        self.run(label(path), || {
+            target.target(level);
+            program.bind();
+            self.triangle.draw();
+        });
+        Ok(())
+    }
+
+    /// Draws a level of `target`, keeping the smaller of what is there and what is drawn.
+    pub fn draw_minimum(&self, path: &str, defines: &[Define<'_>], target: &Texture, level: u32) -> Result<()> {
+        let program = self.program(path, defines, Program::fragment)?;
+        let gl = self.device.gl();
+        self.run(label(path), || {
+            target.target(level);
+            unsafe {
+                gl.enable(glow::BLEND);
+                gl.blend_equation(glow::MIN);
+            }
+            program.bind();
+            self.triangle.draw();
+            unsafe {
+                gl.blend_equation(glow::FUNC_ADD);
+                gl.disable(glow::BLEND);
+            }
+        });
+        Ok(())
+    }
+
+    /// Runs a compute shader of `shaders/`.
+    pub fn dispatch(&self, path: &str, defines: &[Define<'_>], groups: [u32; 3]) -> Result<()> {
+        let program = self.program(path, defines, Program::compute)?;
+        self.run(label(path), || program.dispatch(groups));
+        Ok(())
+    }
+
+    /// Runs `work` as a part of the frame with a name and, while timing is on, a time.
+    pub fn run<T>(&self, label: &str, work: impl FnOnce() -> T) -> T {
+        let gl = self.device.gl();
+        unsafe { gl.push_debug_group(glow::DEBUG_SOURCE_APPLICATION, 0, label) };
+        self.timer.borrow_mut().begin();
+        let result = work();
+        self.timer.borrow_mut().end(label);
+        unsafe { gl.pop_debug_group() };
+        result
+    }
+
+    fn program(
+        &self,
+        path: &str,
+        defines: &[Define<'_>],
+        link: impl FnOnce(&Rc<Device>, &str, &[Define<'_>]) -> Result<Program>,
+    ) -> Result<Rc<Program>> {
+        let mut key = path.to_owned();
+        for (name, value) in defines {
+            key.push_str(&format!(" {name}={value}"));
+        }
+        if let Some(program) = self.programs.borrow().get(&key) {
+            return Ok(program.clone());
+        }
+        let program = Rc::new(link(&self.device, path, defines)?);
+        self.programs.borrow_mut().insert(key, program.clone());
+        Ok(program)
+    }
+}
+
+/// A pass goes by the stem of its shader's name everywhere.
+fn label(path: &str) -> &str {
+    path.split('.').next().unwrap_or(path)
+}

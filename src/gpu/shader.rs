@@ -1,0 +1,201 @@
+//! Shaders: read from `shaders/`, put together, compiled.
+//!
+//! A source is a file of that folder. `#include "path"` pulls in another, once; each file keeps its own line numbers,
+//! and the driver's messages name the file. Every shader begins with the version, the binding numbers of
+//! [`super::layout`] and the caller's own definitions.
+
+use std::fmt::Write as _;
+use std::rc::Rc;
+
+use glow::HasContext as _;
+
+use super::context::Device;
+use super::layout::BINDINGS;
+use crate::{Error, Result};
+
+macro_rules! sources {
+    ($($path:literal),* $(,)?) => {
+        [$(($path, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $path)))),*]
+    };
+}
+
+/// Every file of `shaders/`.
+const SOURCES: &[(&str, &str)] = &sources![
+    "bells/gaussian.glsl",
+    "composite.frag",
+    "copy.frag",
+    "evaluators/direct.glsl",
+    "evaluators/grid.glsl",
+    "evaluators/rows.glsl",
+    "evaluators/series.glsl",
+    "evaluators/stored.glsl",
+    "field.frag",
+    "fullscreen.vert",
+    "harmonics.frag",
+    "probe.frag",
+    "profiles.frag",
+    "range.frag",
+    "shared/bspline.glsl",
+    "shared/phase.glsl",
+    "shared/spectrum.glsl",
+    "spectrum.comp",
+    "spectrum_sum.comp",
+    "strips.frag",
+];
+
+/// A definition that a shader is specialised with.
+pub(crate) type Define<'a> = (&'a str, &'a str);
+
+/// A linked program.
+pub(crate) struct Program {
+    device: Rc<Device>,
+    raw: glow::Program,
+}
+
+impl Program {
+    /// A program that runs `fragment` for each texel of its target.
+    pub fn fragment(device: &Rc<Device>, fragment: &str, defines: &[Define<'_>]) -> Result<Self> {
+        let stages = [(glow::VERTEX_SHADER, "fullscreen.vert"), (glow::FRAGMENT_SHADER, fragment)];
+        Self::link(device, &stages, defines)
+    }
+
+    /// A program of one compute shader.
+    pub fn compute(device: &Rc<Device>, compute: &str, defines: &[Define<'_>]) -> Result<Self> {
+        Self::link(device, &[(glow::COMPUTE_SHADER, compute)], defines)
+    }
+
+    fn link(device: &Rc<Device>, stages: &[(u32, &str)], defines: &[Define<'_>]) -> Result<Self> {
+        let gl = device.gl();
+        let name = stages[stages.len() - 1].1;
+        let raw = unsafe { gl.create_program() }.map_err(|reason| Error::Gl(format!("{name}: {reason}")))?;
+        let program = Self { device: device.clone(), raw };
+        for &(stage, path) in stages {
+            let shader = compile(gl, stage, path, defines)?;
+            unsafe {
+                gl.attach_shader(raw, shader);
+                // Freed together with the program from here on.
+                gl.delete_shader(shader);
+            }
+        }
+        unsafe { gl.link_program(raw) };
+        if unsafe { gl.get_program_link_status(raw) } {
+            Ok(program)
+        } else {
+            Err(Error::Gl(format!("{name} does not link: {}", unsafe { gl.get_program_info_log(raw) })))
+        }
+    }
+
+    /// Makes the program current.
+    pub fn bind(&self) {
+        unsafe { self.device.gl().use_program(Some(self.raw)) }
+    }
+
+    /// Runs a compute program, and makes what it stores visible to every later pass.
+    pub fn dispatch(&self, groups: [u32; 3]) {
+        self.bind();
+        unsafe {
+            self.device.gl().dispatch_compute(groups[0], groups[1], groups[2]);
+            self.device.gl().memory_barrier(glow::SHADER_STORAGE_BARRIER_BIT);
+        }
+    }
+}
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        unsafe { self.device.gl().delete_program(self.raw) }
+    }
+}
+
+fn compile(gl: &glow::Context, stage: u32, path: &str, defines: &[Define<'_>]) -> Result<glow::Shader> {
+    let (source, files) = assemble(path, defines)?;
+    let shader = unsafe { gl.create_shader(stage) }.map_err(|reason| Error::Gl(format!("{path}: {reason}")))?;
+    unsafe {
+        gl.shader_source(shader, &source);
+        gl.compile_shader(shader);
+    }
+    if unsafe { gl.get_shader_compile_status(shader) } {
+        return Ok(shader);
+    }
+    let log = unsafe { gl.get_shader_info_log(shader) };
+    unsafe { gl.delete_shader(shader) };
+    let legend: Vec<_> = files.iter().enumerate().map(|(index, file)| format!("{index} is {file}")).collect();
+    Err(Error::Gl(format!("{path} does not compile ({}):\n{log}", legend.join(", "))))
+}
+
+/// The whole text of a shader, and the files that its `#line` directives number.
+fn assemble(path: &str, defines: &[Define<'_>]) -> Result<(String, Vec<String>)> {
+    let mut text = String::from("#version 430 core\n");
+    for (name, number) in BINDINGS {
+        let _ = writeln!(text, "#define {name} {number}");
+    }
+    for (name, value) in defines {
+        let _ = writeln!(text, "#define {name} {value}");
+    }
+    let mut files = Vec::new();
+    include(path, defines, &mut text, &mut files)?;
+    Ok((text, files))
+}
+
+fn include(path: &str, defines: &[Define<'_>], text: &mut String, files: &mut Vec<String>) -> Result<()> {
+    if files.iter().any(|file| file == path) {
+        return Ok(());
+    }
+    let (_, source) = SOURCES
+        .iter()
+        .find(|(name, _)| *name == path)
+        .ok_or_else(|| Error::Gl(format!("there is no shader called {path}")))?;
+    let index = files.len();
+    files.push(path.to_owned());
+    let _ = writeln!(text, "#line 1 {index}");
+    for (line, number) in source.lines().zip(2..) {
+        if let Some(target) = line.trim().strip_prefix("#include ") {
+            // A definition may choose the file: `#include BELL` with BELL defined as "bells/gaussian.glsl".
+            let target = defines.iter().find(|(name, _)| *name == target).map_or(target, |(_, value)| value);
+            include(target.trim_matches('"'), defines, text, files)?;
+            let _ = writeln!(text, "#line {number} {index}");
+        } else {
+            text.push_str(line);
+            text.push('\n');
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_shader_file_is_embedded() {
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
+        let mut folders = vec![root.clone()];
+        let mut found = Vec::new();
+        while let Some(folder) = folders.pop() {
+            for entry in std::fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    folders.push(path);
+                } else {
+                    found.push(path.strip_prefix(&root).unwrap().to_str().unwrap().to_owned());
+                }
+            }
+        }
+        found.sort();
+        let embedded: Vec<_> = SOURCES.iter().map(|(name, _)| name.to_string()).collect();
+        assert_eq!(found, embedded, "SOURCES, sorted, must list the files of shaders/");
+    }
+
+    #[test]
+    fn a_file_is_included_once_and_lines_keep_their_numbers() {
+        let (text, files) = assemble("field.frag", &[("EVALUATOR", "\"evaluators/stored.glsl\"")]).unwrap();
+        assert_eq!(files, ["field.frag", "evaluators/stored.glsl"]);
+        assert!(text.contains("#line 1 1"), "{text}");
+        assert!(!text.contains("#include"), "{text}");
+    }
+
+    #[test]
+    fn a_missing_file_is_named() {
+        let error = assemble("nothing.frag", &[]).unwrap_err();
+        assert!(error.to_string().contains("nothing.frag"), "{error}");
+    }
+}

@@ -1,0 +1,102 @@
+//! The spectrum: ghosts in, A, B, C, D of every kept mode out, one dispatch a group.
+
+use super::layout::{GHOSTS, OFFSETS, PARTIALS, PASS, SPECTRUM, SpectralGhost};
+use super::resource::Buffer;
+use super::runner::Runner;
+use crate::Result;
+
+/// Modes along each side of a work group's tile; as in `spectrum.comp`.
+const TILE: u32 = 8;
+/// A slice is at least this many ghosts: fewer would cost more in summing slices than they win in parallel.
+const SHORTEST_SLICE: usize = 128;
+/// And there are at most this many slices.
+const MOST_SLICES: usize = 64;
+/// Room for the slices' sums, in vec4s: 32 MiB.
+const PARTIALS_LIMIT: usize = 2 << 20;
+
+/// Ghosts of one bell, with the modes that they need.
+pub(crate) struct SpectrumGroup<'a> {
+    /// The bell's file in `shaders/`.
+    pub bell: &'a str,
+    pub ghosts: &'a [SpectralGhost],
+    /// Highest harmonics in x and y that this group adds to.
+    pub degree: [u32; 2],
+}
+
+/// The spectrum's tables on the device.
+pub(crate) struct Spectrum {
+    terms: Buffer<[f32; 4]>,
+    offsets: Buffer<u32>,
+    degree: [u32; 2],
+    ghosts: Buffer<SpectralGhost>,
+    partials: Buffer<[f32; 4]>,
+    uniforms: Buffer<[u32; 4]>,
+}
+
+impl Spectrum {
+    /// Tables with no term yet.
+    pub fn new(runner: &Runner) -> Result<Self> {
+        let device = runner.device();
+        Ok(Self {
+            terms: Buffer::new(device, 0)?,
+            offsets: Buffer::from_slice(device, &[0, 0])?,
+            degree: [0; 2],
+            ghosts: Buffer::new(device, 0)?,
+            partials: Buffer::new(device, 0)?,
+            uniforms: Buffer::new(device, 1)?,
+        })
+    }
+
+    /// Fills the tables. `counts[n]` says how many harmonics in y are kept beside harmonic n in x.
+    pub fn compute(&mut self, runner: &Runner, counts: &[u32], groups: &[SpectrumGroup<'_>]) -> Result<()> {
+        let mut offsets = vec![0];
+        offsets.extend(counts.iter().scan(0, |end, count| {
+            *end += count;
+            Some(*end)
+        }));
+        let terms = *offsets.last().expect("begins with one") as usize;
+        self.degree = [counts.len().max(1) as u32 - 1, counts.iter().max().map_or(0, |most| most.max(&1) - 1)];
+        offsets.insert(0, counts.len() as u32);
+        self.offsets.store(&offsets)?;
+        self.terms.store(&vec![[0.0; 4]; 3 * terms])?;
+        for group in groups.iter().filter(|group| !group.ghosts.is_empty()) {
+            self.add(runner, group)?;
+        }
+        Ok(())
+    }
+
+    fn add(&mut self, runner: &Runner, group: &SpectrumGroup<'_>) -> Result<()> {
+        let tiles = group.degree.map(|degree| (degree + 1).div_ceil(TILE));
+        let vectors = 3 * (tiles[0] * tiles[1] * TILE * TILE) as usize;
+        let most = (PARTIALS_LIMIT / vectors).clamp(1, MOST_SLICES);
+        let slice_length = SHORTEST_SLICE.max(group.ghosts.len().div_ceil(most));
+        let slices = group.ghosts.len().div_ceil(slice_length) as u32;
+
+        self.ghosts.store(group.ghosts)?;
+        if self.partials.length() < slices as usize * vectors {
+            self.partials = Buffer::new(runner.device(), slices as usize * vectors)?;
+        }
+        self.ghosts.bind_storage(GHOSTS);
+        self.partials.bind_storage(PARTIALS);
+        self.uniforms.store(&[[group.ghosts.len() as u32, slice_length as u32, 0, 0]])?;
+        self.uniforms.bind_uniform(PASS);
+        let bell = format!("\"{}\"", group.bell);
+        runner.dispatch("spectrum.comp", &[("BELL", &bell)], [tiles[0], tiles[1], slices])?;
+
+        self.bind();
+        self.uniforms.store(&[[group.degree[0], group.degree[1], slices, 0]])?;
+        self.uniforms.bind_uniform(PASS);
+        runner.dispatch("spectrum_sum.comp", &[], [tiles[0], tiles[1], 1])
+    }
+
+    /// Makes the tables visible to the passes.
+    pub fn bind(&self) {
+        self.terms.bind_storage(SPECTRUM);
+        self.offsets.bind_storage(OFFSETS);
+    }
+
+    /// Highest harmonics in x and y that are kept.
+    pub fn degree(&self) -> [u32; 2] {
+        self.degree
+    }
+}

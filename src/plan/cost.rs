@@ -1,0 +1,57 @@
+//! What an evaluator costs: a handful of constants, one for each kind of work.
+
+use super::{Evaluator, Plan, Request};
+
+/// Nanoseconds on a software renderer on two cores, measured by `vglare bench`. The plan needs their ratios only, and
+/// those hold well enough on a real GPU, where everything is about a thousand times faster.
+mod nanoseconds {
+    /// One bell at one pixel.
+    pub const BELL: f64 = 1.5;
+    /// One term of the series at one pixel.
+    pub const TERM: f64 = 2.0;
+    /// One harmonic of a row's profile at one pixel.
+    pub const HARMONIC: f64 = 2.5;
+    /// One term on the way to a row's profile.
+    pub const PROFILE: f64 = 4.0;
+    /// One interpolation among four nodes.
+    pub const INTERPOLATION: f64 = 6.0;
+    /// One term of one ghost.
+    pub const SPECTRUM: f64 = 1.5;
+    /// Starting a pass.
+    pub const PASS: f64 = 50_000.0;
+}
+
+/// What one evaluator is expected to cost.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct Cost {
+    /// The evaluator.
+    pub evaluator: Evaluator,
+    /// Milliseconds on the machine that the constants were measured on.
+    pub milliseconds: f64,
+}
+
+/// The cost of a plan.
+pub(super) fn estimate(plan: &Plan, request: &Request) -> Cost {
+    use nanoseconds::*;
+    let window = request.frame.window;
+    let pixels = window.pixels() as f64;
+    let rows = |rows: f64, columns: f64| {
+        rows * plan.terms as f64 * 2.0 * PROFILE + rows * columns * f64::from(plan.degree[0] + 1) * HARMONIC
+    };
+    let spectrum: f64 = plan
+        .groups
+        .iter()
+        .map(|group| group.ghosts as f64 * f64::from(group.degree[0] + 1) * f64::from(group.degree[1] + 1) * SPECTRUM)
+        .sum();
+    let field = match plan.evaluator {
+        Evaluator::Direct => pixels * plan.ghosts() as f64 * BELL + PASS,
+        Evaluator::Series => spectrum + pixels * plan.terms as f64 * TERM + 4.0 * PASS,
+        Evaluator::Rows => spectrum + rows(f64::from(window.height), f64::from(window.width)) + 5.0 * PASS,
+        Evaluator::Grid => {
+            let [columns, lines] = plan.lattice.map_or([0.0; 2], |lattice| lattice.nodes.map(f64::from));
+            let strips = columns * f64::from(window.height);
+            spectrum + rows(lines, columns) + (strips + pixels) * INTERPOLATION + 7.0 * PASS
+        }
+    };
+    Cost { evaluator: plan.evaluator, milliseconds: field * 1e-6 }
+}

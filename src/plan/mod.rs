@@ -1,0 +1,251 @@
+//! Tolerance in, plan out: the cheapest computation whose predicted error stays below what was asked.
+//!
+//! Pure: ghosts, a picture's size and a tolerance decide everything. The error is split by its sources, each with its
+//! bound; docs/accuracy.md says where each comes from.
+
+mod cost;
+mod lattice;
+mod period;
+mod rounding;
+mod terms;
+mod weigh;
+
+use glam::DVec2;
+
+use crate::frame::Frame;
+use crate::scene::Ghost;
+use crate::series::Bell;
+use crate::{Error, Result};
+
+pub use cost::Cost;
+pub use lattice::Lattice;
+pub use terms::Group;
+
+use weigh::Weighed;
+
+/// Highest harmonic that a plan may use along one axis.
+pub const HIGHEST_DEGREE: u32 = 4096;
+
+/// How the field is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, clap::ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Evaluator {
+    /// Sum the bells at every pixel.
+    Direct,
+    /// Sum every kept term of the series at every pixel.
+    Series,
+    /// Sum over the harmonics in y once for each row, then over those in x at every pixel.
+    Rows,
+    /// Evaluate the series on the coarse lattice that its band limit allows, then interpolate.
+    Grid,
+}
+
+impl Evaluator {
+    /// Every evaluator.
+    pub const ALL: [Self; 4] = [Self::Direct, Self::Series, Self::Rows, Self::Grid];
+}
+
+impl std::fmt::Display for Evaluator {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Direct => "direct",
+            Self::Series => "series",
+            Self::Rows => "rows",
+            Self::Grid => "grid",
+        })
+    }
+}
+
+/// What is asked of the plan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Request {
+    /// The picture and the pixels at which the field is wanted.
+    pub frame: Frame,
+    /// Largest error over the pixels, relative to the largest value of the same colour.
+    pub tolerance: f64,
+    /// The period, where it is not to be planned.
+    pub period: Option<DVec2>,
+    /// The degree in x and y, where it is not to be planned; every group then has the whole rectangle of modes.
+    pub degree: Option<[u32; 2]>,
+    /// The evaluator, where it is not to be planned.
+    pub evaluator: Option<Evaluator>,
+    /// The most terms that the device can hold.
+    pub most_terms: usize,
+}
+
+impl Request {
+    /// A request that leaves everything but the tolerance to the plan.
+    pub fn new(frame: Frame, tolerance: f64) -> Self {
+        Self { frame, tolerance, period: None, degree: None, evaluator: None, most_terms: 2 << 20 }
+    }
+}
+
+/// What was decided.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Plan {
+    /// How the field is computed.
+    pub evaluator: Evaluator,
+    /// The period in x and y.
+    pub period: DVec2,
+    /// Highest harmonic in x and y.
+    pub degree: [u32; 2],
+    /// How many harmonics of y are kept beside harmonic n of x.
+    #[serde(skip)]
+    pub counts: Vec<u32>,
+    /// How many modes that are.
+    pub terms: usize,
+    /// The groups of ghosts, one dispatch each.
+    pub groups: Vec<Group>,
+    /// The lattice, where the evaluator is `grid`.
+    pub lattice: Option<Lattice>,
+    /// The field's largest value or, where it is not known exactly, a lower bound of it, RGB; the field is computed in
+    /// units of it.
+    pub scale: [f64; 3],
+    /// Pixels, as columns and rows of the picture, at which the field was found large.
+    #[serde(skip)]
+    pub peaks: Vec<[i32; 2]>,
+    /// How many ghosts cannot reach the picture within the tolerance, and are left out.
+    pub dropped: usize,
+    /// The error that the plan expects at most.
+    pub predicted: Prediction,
+    /// The cost that the plan expects, and that of the evaluators it decided against.
+    pub costs: Vec<Cost>,
+}
+
+impl Plan {
+    /// How many ghosts the field is made of.
+    pub fn ghosts(&self) -> usize {
+        self.groups.iter().map(|group| group.members.len()).sum()
+    }
+}
+
+/// Upper bounds of the error, by source; relative to the field's largest value, like the tolerance.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
+pub struct Prediction {
+    /// Ghosts that are left out.
+    pub dropped: f64,
+    /// Copies of the bells, a period away.
+    pub periodisation: f64,
+    /// Harmonics that are left out.
+    pub truncation: f64,
+    /// Between the lattice's nodes.
+    pub interpolation: f64,
+    /// f32: phases, tables, sums.
+    pub rounding: f64,
+}
+
+impl Prediction {
+    /// All of it.
+    pub fn total(&self) -> f64 {
+        self.dropped + self.periodisation + self.truncation + self.interpolation + self.rounding
+    }
+}
+
+/// Parts of the tolerance that the sources may use up, after what rounding takes.
+mod share {
+    pub const DROPPED: f64 = 0.02;
+    pub const PERIODISATION: f64 = 0.08;
+    /// Of `series` and `rows`.
+    pub const TRUNCATION: f64 = 0.9;
+    /// Of `grid`, which has both.
+    pub const TRUNCATION_OF_GRID: f64 = 0.45;
+    pub const INTERPOLATION: f64 = 0.45;
+}
+
+/// The cheapest plan that meets the request.
+///
+/// # Errors
+/// [`Error::ToleranceBelowFloor`] where f32 cannot be as exact as asked; [`Error::Plan`] where the series that was
+/// asked for cannot be had.
+pub fn plan(ghosts: &[Ghost], request: &Request) -> Result<Plan> {
+    if !(request.tolerance > 0.0 && request.tolerance < 1.0) {
+        return Err(Error::Plan(format!("a tolerance of {} is not between 0 and 1", request.tolerance)));
+    }
+    let weighed = weigh::weigh(ghosts, request);
+    let wanted = |evaluator| request.evaluator.is_none_or(|only| only == evaluator);
+    let mut candidates = Vec::new();
+    let mut refusals = Vec::new();
+    for evaluator in Evaluator::ALL.into_iter().filter(|&evaluator| wanted(evaluator)) {
+        match candidate(ghosts, &weighed, request, evaluator) {
+            Ok(plan) => candidates.push(plan),
+            Err(error) => refusals.push(error),
+        }
+    }
+    let mut costs: Vec<Cost> = candidates.iter().flat_map(|plan: &Plan| plan.costs.clone()).collect();
+    costs.sort_by(|a, b| a.milliseconds.total_cmp(&b.milliseconds));
+    let cheapest = candidates.into_iter().min_by(|a, b| a.costs[0].milliseconds.total_cmp(&b.costs[0].milliseconds));
+    match cheapest {
+        Some(plan) => Ok(Plan { costs, ..plan }),
+        None => Err(refusals.pop().unwrap_or_else(|| Error::Plan("no evaluator is left".into()))),
+    }
+}
+
+/// The plan that one evaluator asks for.
+fn candidate(ghosts: &[Ghost], weighed: &Weighed, request: &Request, evaluator: Evaluator) -> Result<Plan> {
+    let rounding = rounding::bound(weighed, evaluator);
+    // With the whole of the series given, there is nothing left to plan: the error is predicted as it comes.
+    let given = request.period.is_some() && request.degree.is_some() && evaluator != Evaluator::Grid;
+    let usable = request.tolerance - rounding;
+    if usable < 0.25 * request.tolerance && !given {
+        return Err(Error::ToleranceBelowFloor { asked: request.tolerance, floor: rounding / 0.75 });
+    }
+    let mut plan = Plan {
+        evaluator,
+        period: DVec2::ONE,
+        degree: [0; 2],
+        counts: Vec::new(),
+        terms: 0,
+        groups: Vec::new(),
+        lattice: None,
+        scale: weighed.scale,
+        peaks: weighed.peaks.clone(),
+        dropped: weighed.dropped,
+        predicted: Prediction { dropped: weighed.dropped_error, rounding, ..Prediction::default() },
+        costs: Vec::new(),
+    };
+    plan.groups = terms::group(ghosts, weighed);
+    if evaluator != Evaluator::Direct {
+        plan_series(&mut plan, ghosts, weighed, request, usable)?;
+    }
+    plan.costs = vec![cost::estimate(&plan, request)];
+    Ok(plan)
+}
+
+fn plan_series(plan: &mut Plan, ghosts: &[Ghost], weighed: &Weighed, request: &Request, usable: f64) -> Result<()> {
+    let grid = plan.evaluator == Evaluator::Grid;
+    let truncation = usable * if grid { share::TRUNCATION_OF_GRID } else { share::TRUNCATION };
+    let reaches = period::reaches(ghosts, weighed, request.frame);
+    plan.period = match request.period {
+        Some(period) => period,
+        None => period::shortest(&reaches, usable * share::PERIODISATION),
+    };
+    plan.predicted.periodisation = period::error(&reaches, plan.period);
+
+    plan.counts = match request.degree {
+        Some(degree) => terms::rectangle(&mut plan.groups, degree),
+        None => terms::ellipses(&mut plan.groups, plan.period, truncation)?,
+    };
+    plan.terms = plan.counts.iter().map(|&count| count as usize).sum();
+    if plan.terms > request.most_terms {
+        let most = request.most_terms;
+        return Err(Error::Plan(format!("the series would have {} terms, and {most} fit on the device", plan.terms)));
+    }
+    plan.degree = [plan.counts.len() as u32 - 1, plan.counts[0] - 1];
+    plan.predicted.truncation = terms::error(&plan.groups, plan.period, &plan.counts);
+
+    if grid {
+        let lattice = lattice::coarsest(plan, request.frame, usable * share::INTERPOLATION);
+        plan.predicted.interpolation = lattice.error;
+        plan.lattice = Some(lattice);
+    }
+    Ok(())
+}
+
+/// What a bell's periodised factor can be at most: its own 1 and what the copies add at the centre.
+fn periodised_peak(bell: Bell, size: f64) -> f64 {
+    let shape = bell.shape();
+    shape.coefficient(0, size) + shape.tails(0, size)[0]
+}
+
+#[cfg(test)]
+mod tests;

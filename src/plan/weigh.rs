@@ -1,0 +1,128 @@
+//! What each ghost means to the picture: the field's scale, and which ghosts never reach it.
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use super::{Request, share};
+use crate::frame::Frame;
+use crate::reference;
+use crate::scene::Ghost;
+
+/// Evaluations of a bell that finding the scale may cost.
+const EFFORT: usize = 2_000_000;
+/// Probes: at the pixels next to the ghosts that alone shine strongest, and on an even grid over the picture.
+const STRONGEST: usize = 48;
+const GRID: u32 = 6;
+
+/// The ghosts, weighed against the field's scale.
+pub(super) struct Weighed {
+    /// A lower bound of the field's largest absolute value at any pixel, RGB; 1 for a colour that has nothing.
+    pub scale: [f64; 3],
+    /// The pixels that were probed to find it.
+    pub peaks: Vec<[i32; 2]>,
+    /// For each ghost its peak in units of the scale, the strongest colour; 0 for those that are dropped.
+    pub weights: Vec<f64>,
+    /// How many are dropped, and at most how much that changes at any pixel.
+    pub dropped: usize,
+    pub dropped_error: f64,
+}
+
+/// Weighs the ghosts against the picture.
+pub(super) fn weigh(ghosts: &[Ghost], request: &Request) -> Weighed {
+    let frame = request.frame;
+    let nearest: Vec<DVec2> = ghosts.par_iter().map(|ghost| nearest_offset(ghost, frame)).collect();
+    let peaks = probes(ghosts, &nearest, frame);
+    let points: Vec<DVec2> = peaks.iter().map(|&[i, j]| frame.position(f64::from(i), f64::from(j))).collect();
+    let mut scale = [0.0f64; 3];
+    for value in reference::direct_at(ghosts, &points) {
+        for (scale, value) in scale.iter_mut().zip(value) {
+            *scale = scale.max(value.abs());
+        }
+    }
+    // A colour of which nothing reaches the picture, or less than f32 can tell beside the others, is held against the
+    // others' scale: nothing is not to be computed to a thousandth of itself.
+    let largest = scale.iter().fold(0.0f64, |a, &b| a.max(b));
+    let floor = if largest > 0.0 { largest * 1e-30 } else { 1.0 };
+    let scale = scale.map(|value| if value > floor { value } else if largest > 0.0 { largest } else { 1.0 });
+
+    let mut weights: Vec<f64> = ghosts.iter().map(|ghost| peak_weight(ghost, scale)).collect();
+    let reached: Vec<f64> =
+        ghosts.iter().zip(&nearest).zip(&weights).map(|((ghost, &offset), w)| w * ghost.bell.shape().value(offset)).collect();
+    let (dropped, dropped_error) = drop_faint(&mut weights, &reached, share::DROPPED * request.tolerance);
+    Weighed { scale, peaks, weights, dropped, dropped_error }
+}
+
+fn peak_weight(ghost: &Ghost, scale: [f64; 3]) -> f64 {
+    ghost.radiance.iter().zip(scale).map(|(radiance, scale)| radiance.abs() / scale).fold(0.0, f64::max)
+}
+
+/// From the ghost's centre to the nearest point of the window, in sizes.
+fn nearest_offset(ghost: &Ghost, frame: Frame) -> DVec2 {
+    let (low, high) = frame.bounds();
+    (ghost.center.clamp(low, high) - ghost.center) / ghost.size
+}
+
+/// Pixels at which the field may be largest.
+fn probes(ghosts: &[Ghost], nearest: &[DVec2], frame: Frame) -> Vec<[i32; 2]> {
+    let window = frame.window;
+    let inside = |p: DVec2| {
+        let last = [window.x + window.width as i32 - 1, window.y + window.height as i32 - 1];
+        [(p.x.round() as i32).clamp(window.x, last[0]), (p.y.round() as i32).clamp(window.y, last[1])]
+    };
+    let most = (EFFORT / ghosts.len().max(1)).clamp(4, STRONGEST + (GRID * GRID) as usize);
+    let mut alone: Vec<(f64, usize)> = ghosts
+        .iter()
+        .zip(nearest)
+        .enumerate()
+        .map(|(k, (ghost, &offset))| {
+            let radiance = ghost.radiance.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+            (radiance * ghost.bell.shape().value(offset), k)
+        })
+        .collect();
+    let strongest = alone.len().min(most.div_ceil(2).min(STRONGEST));
+    if strongest < alone.len() {
+        alone.select_nth_unstable_by(strongest, |a, b| b.0.total_cmp(&a.0));
+    }
+    let mut pixels: Vec<[i32; 2]> =
+        alone[..strongest].iter().map(|&(_, k)| inside(frame.pixel(ghosts[k].center))).collect();
+    let side = ((most - strongest) as f64).sqrt() as u32;
+    for i in 0..side.min(GRID) {
+        for j in 0..side.min(GRID) {
+            let across = |k: u32, length: u32| (f64::from(k) + 0.5) / f64::from(side.min(GRID)) * f64::from(length) - 0.5;
+            let corner = DVec2::new(f64::from(window.x), f64::from(window.y));
+            pixels.push(inside(corner + DVec2::new(across(i, window.width), across(j, window.height))));
+        }
+    }
+    pixels.sort_unstable();
+    pixels.dedup();
+    pixels
+}
+
+/// Sets the weights of the faintest ghosts to zero while all of them together stay within the budget.
+///
+/// Ghosts are told apart by powers of two only, so that no sorting is needed.
+fn drop_faint(weights: &mut [f64], reached: &[f64], budget: f64) -> (usize, f64) {
+    const LOWEST: i32 = -200;
+    let bin = |value: f64| if value > 0.0 { value.log2().floor().clamp(f64::from(LOWEST), 55.0) as i32 } else { LOWEST };
+    let mut sums = [0.0f64; 256];
+    for &value in reached {
+        sums[(bin(value) - LOWEST) as usize] += value;
+    }
+    let mut error = 0.0;
+    let mut limit = LOWEST;
+    for sum in sums {
+        if error + sum > budget {
+            break;
+        }
+        error += sum;
+        limit += 1;
+    }
+    let mut dropped = 0;
+    for (weight, &value) in weights.iter_mut().zip(reached) {
+        if bin(value) < limit {
+            *weight = 0.0;
+            dropped += 1;
+        }
+    }
+    (dropped, error)
+}
