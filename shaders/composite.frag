@@ -8,22 +8,22 @@ layout(std140, binding = BINDING_PASS) uniform Pass {
     vec4 light_gain; // what a light keeps of itself, RGB; 1 unless light is taken from the photo
     vec4 luminance;  // weights of R, G, B; w: the luminance from which on a pixel is a light
     float strength;
-    uint normalize;  // 0 none, 1 clamp, 2 min/max
-    uint pad0;
-    uint pad1;
+    float pad0;
+    float pad1;
+    float pad2;
 };
 layout(location = 0) out vec4 picture;
 
 vec3 normalized(vec3 value) {
-    if (normalize == 1u) {
+#if NORMALIZE == 1
         return clamp(value, 0.0, 1.0);
-    }
-    if (normalize == 2u) {
+#elif NORMALIZE == 2
         vec2 ends = texelFetch(range, ivec2(0), 0).xy * vec2(1.0, -1.0); // (min, max)
         float span = ends.y - ends.x;
         return span > 0.0 ? (value - ends.x) / span : vec3(0.0); // a flat field has no contrast to stretch
-    }
+#else
     return value;
+#endif
 }
 
 void main() {
@@ -33,7 +33,10 @@ void main() {
     picture = vec4(added, 1.0);
 #else
     vec4 light = texelFetch(photo, pixel, 0);
+#ifdef TAKE_LIGHT
     bool is_light = dot(luminance.rgb, light.rgb) >= luminance.w && !any(isinf(light.rgb));
-    picture = vec4(light.rgb * (is_light ? light_gain.rgb : vec3(1.0)) + added, light.a);
+    light.rgb *= is_light ? light_gain.rgb : vec3(1.0);
+#endif
+    picture = vec4(light.rgb + added, light.a);
 #endif
 }

@@ -1,7 +1,7 @@
-// The lattice interpolated along y: its columns, at every row of the tile.
+// The cells interpolated along y, at every row of the tile.
 #include "shared/bspline.glsl"
 
-layout(binding = UNIT_LATTICE) uniform sampler2D lattice;
+layout(binding = UNIT_CELLS) uniform sampler2D cells;
 layout(std430, binding = BINDING_KNOTS_Y) readonly buffer KnotsY {
     Knot knots_y[];
 };
@@ -11,7 +11,7 @@ void main() {
     ivec2 texel = ivec2(gl_FragCoord.xy);
     Knot knot = knots_y[texel.y];
     vec4 weights = cubic_weights(knot.fraction);
-    ivec2 node = ivec2(texel.x, knot.first);
-    strip = weights.x * texelFetch(lattice, node, 0) + weights.y * texelFetch(lattice, node + ivec2(0, 1), 0)
-          + weights.z * texelFetch(lattice, node + ivec2(0, 2), 0) + weights.w * texelFetch(lattice, node + ivec2(0, 3), 0);
+    ivec2 cell = ivec2(texel.x, knot.first);
+    strip = weights.x * texelFetch(cells, cell, 0) + weights.y * texelFetch(cells, cell + ivec2(0, 1), 0)
+          + weights.z * texelFetch(cells, cell + ivec2(0, 2), 0) + weights.w * texelFetch(cells, cell + ivec2(0, 3), 0);
 }

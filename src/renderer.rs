@@ -139,6 +139,49 @@ impl Renderer {
         Ok(())
     }
 
+    /// Puts the photo of a frame that is small enough for one tile on the device, for [`Renderer::draw`].
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the frame is too large for one tile, or the driver refuses.
+    pub fn load(&mut self, frame: Frame, pixels: &[[f32; 4]]) -> Result<()> {
+        assert_eq!(pixels.len(), frame.window.pixels(), "as many pixels as the window has");
+        let &[tile] = &self.tiles(frame.window)[..] else {
+            return Err(Error::Gl("the picture does not fit one tile".into()));
+        };
+        let photo = self.composite.photo(&self.runner, tile.width, tile.height)?;
+        self.runner.run("upload", || photo.write(pixels, tile.width as usize, tile.width, tile.height));
+        Ok(())
+    }
+
+    /// Draws the loaded photo with its glare and leaves the picture on the device. Does not wait for it.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the driver refuses, or where there is no scene.
+    pub fn draw(&mut self, frame: Frame, settings: &Settings) -> Result<()> {
+        let uniforms = self.start(frame, settings)?;
+        let source = self.evaluate(frame, frame.window)?;
+        self.composite.draw(&self.runner, source, &uniforms)?;
+        Ok(())
+    }
+
+    /// Copies the loaded photo on the device, and nothing else: the yardstick of the benches.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where no photo is loaded, or the driver refuses.
+    pub fn draw_copy(&mut self) -> Result<()> {
+        self.copy.draw(&self.runner, self.composite.loaded()?)
+    }
+
+    /// Waits until the device has done all that it was asked to.
+    pub fn finish(&self) {
+        self.runner.device().finish();
+    }
+
+    /// Forgets the scene, so that the next [`Renderer::set_scene`] computes its spectrum anew.
+    pub fn forget_scene(&mut self) {
+        self.scene = None;
+    }
+
     /// The glare alone, as [`Renderer::composite`] would add it, row by row from the top; alpha is 1.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-// `grid`: the strips, interpolated along x. They hold the lattice's columns at every row of the tile.
+// `grid`: the cubic of the pixel's cell, which the strips hold for every row of the tile.
 #include "shared/bspline.glsl"
 
 layout(binding = UNIT_STRIPS) uniform sampler2D strips;
@@ -6,10 +6,14 @@ layout(std430, binding = BINDING_KNOTS_X) readonly buffer KnotsX {
     Knot knots_x[];
 };
 
+float cubic(ivec2 texel, float t) {
+    vec4 polynomial = texelFetch(strips, texel, 0);
+    return polynomial.x + t * (polynomial.y + t * (polynomial.z + t * polynomial.w));
+}
+
 vec3 glare(ivec2 pixel) {
     Knot knot = knots_x[pixel.x];
-    vec4 weights = cubic_weights(knot.fraction);
-    ivec2 node = ivec2(knot.first, pixel.y);
-    return weights.x * texelFetch(strips, node, 0).rgb + weights.y * texelFetch(strips, node + ivec2(1, 0), 0).rgb
-         + weights.z * texelFetch(strips, node + ivec2(2, 0), 0).rgb + weights.w * texelFetch(strips, node + ivec2(3, 0), 0).rgb;
+    ivec2 texel = ivec2(3u * knot.first, pixel.y);
+    return vec3(cubic(texel, knot.fraction), cubic(texel + ivec2(1, 0), knot.fraction),
+                cubic(texel + ivec2(2, 0), knot.fraction));
 }

@@ -6,7 +6,7 @@ use super::field::Source;
 use super::layout::{PASS, PHOTO};
 use super::resource::{Buffer, Scratch, Texel, Texture};
 use super::runner::Runner;
-use crate::Result;
+use crate::{Error, Result};
 
 /// The composite's uniforms; as in `composite.frag`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -47,9 +47,14 @@ impl CompositePass {
         self.photo.get(runner.device(), Texel::Rgba, width, height)
     }
 
+    /// The tile of the photo as it was last made.
+    pub fn loaded(&self) -> Result<&Texture> {
+        self.photo.current().ok_or_else(|| Error::Gl("no photo is loaded".into()))
+    }
+
     /// The tile that [`CompositePass::photo`] holds, with its glare.
     pub fn draw(&mut self, runner: &Runner, source: Source, settings: &Composite) -> Result<&Texture> {
-        let photo = self.photo.current().ok_or_else(|| crate::Error::Gl("no photo to composite".into()))?;
+        let photo = self.loaded()?;
         photo.bind(PHOTO);
         let (width, height) = (photo.level_width(0), photo.level_height(0));
         Self::run(&mut self.picture, &mut self.uniforms, runner, &source.defines(), settings, [width, height])

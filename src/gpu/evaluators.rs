@@ -3,7 +3,7 @@
 
 use super::harmonics::Harmonics;
 use super::layout::{
-    DirectGhost, GHOSTS, HARMONICS_X, HARMONICS_Y, KNOTS_X, KNOTS_Y, Knot, LATTICE, PROFILES, STRIPS,
+    CELLS, DirectGhost, GHOSTS, HARMONICS_X, HARMONICS_Y, KNOTS_X, KNOTS_Y, Knot, LATTICE, PROFILES, STRIPS,
 };
 use super::resource::{Buffer, Scratch, Texel};
 use super::runner::Runner;
@@ -29,6 +29,7 @@ pub(crate) struct Evaluators {
     harmonics_y: Harmonics,
     profiles: Scratch,
     lattice: Scratch,
+    cells: Scratch,
     strips: Scratch,
     knots_x: Buffer<Knot>,
     knots_y: Buffer<Knot>,
@@ -45,6 +46,7 @@ impl Evaluators {
             harmonics_y: Harmonics::new(runner, HARMONICS_Y)?,
             profiles: Scratch::default(),
             lattice: Scratch::default(),
+            cells: Scratch::default(),
             strips: Scratch::default(),
             knots_x: Buffer::new(device, 0)?,
             knots_y: Buffer::new(device, 0)?,
@@ -90,12 +92,17 @@ impl Evaluators {
         // Here `field` draws the lattice; elsewhere it draws the picture.
         runner.draw("field.frag", &[("EVALUATOR", "\"evaluators/rows.glsl\"")], lattice, 0)?;
 
+        lattice.bind(LATTICE);
+        // Three texels for each cell, of which there are three fewer than nodes.
+        let cells = self.cells.get(device, Texel::Rgba, 3 * (columns - 3), rows)?;
+        runner.draw("cells.frag", &[], cells, 0)?;
+
         self.knots_x.store(tile.knots[0])?;
         self.knots_y.store(tile.knots[1])?;
         self.knots_x.bind_storage(KNOTS_X);
         self.knots_y.bind_storage(KNOTS_Y);
-        lattice.bind(LATTICE);
-        let strips = self.strips.get(device, Texel::Rgba, columns, tile.knots[1].len() as u32)?;
+        cells.bind(CELLS);
+        let strips = self.strips.get(device, Texel::Rgba, 3 * (columns - 3), tile.knots[1].len() as u32)?;
         runner.draw("strips.frag", &[], strips, 0)?;
         strips.bind(STRIPS);
         Ok(())

@@ -21,7 +21,7 @@ impl Source {
     /// What a shader is specialised with to include this function.
     pub fn defines(self) -> Vec<(&'static str, &'static str)> {
         let mut defines = vec![("EVALUATOR", self.evaluator)];
-        defines.extend(self.bell.map(|bell| ("BELL", bell)));
+        defines.push(("NORMALIZE","0")); defines.extend(self.bell.map(|bell| ("BELL", bell)));
         defines
     }
 }

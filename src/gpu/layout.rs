@@ -28,15 +28,16 @@ pub(crate) const HARMONICS_X: Binding = ("UNIT_HARMONICS_X", 2);
 pub(crate) const HARMONICS_Y: Binding = ("UNIT_HARMONICS_Y", 3);
 pub(crate) const PROFILES: Binding = ("UNIT_PROFILES", 4);
 pub(crate) const LATTICE: Binding = ("UNIT_LATTICE", 5);
-pub(crate) const STRIPS: Binding = ("UNIT_STRIPS", 6);
-pub(crate) const RANGE: Binding = ("UNIT_RANGE", 7);
+pub(crate) const CELLS: Binding = ("UNIT_CELLS", 6);
+pub(crate) const STRIPS: Binding = ("UNIT_STRIPS", 7);
+pub(crate) const RANGE: Binding = ("UNIT_RANGE", 8);
 /// Where textures are made and filled, so that no pass's own units are disturbed meanwhile.
-pub(crate) const WORKBENCH: Binding = ("UNIT_WORKBENCH", 8);
+pub(crate) const WORKBENCH: Binding = ("UNIT_WORKBENCH", 9);
 
 /// Every binding, for the head of every shader.
-pub(crate) const BINDINGS: [Binding; 17] = [
+pub(crate) const BINDINGS: [Binding; 18] = [
     PASS, GHOSTS, PARTIALS, SPECTRUM, OFFSETS, PHASES, PROBES, KNOTS_X, KNOTS_Y, PHOTO, FIELD, HARMONICS_X, HARMONICS_Y,
-    PROFILES, LATTICE, STRIPS, RANGE,
+    PROFILES, LATTICE, CELLS, STRIPS, RANGE,
 ];
 
 /// One ghost as the spectrum's shader reads it.
