@@ -4,6 +4,12 @@ use glam::DVec2;
 
 use crate::series::Bell;
 
+mod find;
+mod regions;
+pub mod threshold;
+
+pub use find::{FindOptions, Found, find};
+
 /// A bright source.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Light {
