@@ -5,10 +5,12 @@ use glam::DVec2;
 use crate::series::Bell;
 
 mod find;
+mod lens;
 mod regions;
 pub mod threshold;
 
 pub use find::{FindOptions, Found, find};
+pub use lens::{Lens, ghosts};
 
 /// A bright source.
 #[derive(Debug, Clone, Copy, PartialEq)]
