@@ -147,12 +147,12 @@ fn json_reason(text: &str, error: &serde_json::Error) -> String {
 ///     |        ^^
 /// ```
 fn pointed(text: &str, span: Range<usize>, message: &str) -> String {
-    let start = text.floor_char_boundary(span.start);
+    let start = boundary(text, span.start);
     let line_start = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
     let line = text[line_start..].lines().next().unwrap_or_default();
     let number = text[..line_start].matches('\n').count() + 1;
     let column = text[line_start..start].chars().count();
-    let end = text.floor_char_boundary(span.end.min(line_start + line.len()).max(start));
+    let end = boundary(text, span.end.min(line_start + line.len()).max(start));
     let marks = "^".repeat(text[start..end].chars().count().max(1));
     // A line may be megabytes long where someone wrote all on one; then its place must do.
     if line.len() > 160 {
@@ -160,6 +160,11 @@ fn pointed(text: &str, span: Range<usize>, message: &str) -> String {
     }
     let (gutter, line, indent) = (" ".repeat(number.to_string().len()), line.replace('\t', " "), " ".repeat(column));
     format!("line {number}, column {}: {message}\n  {number} | {line}\n  {gutter} | {indent}{marks}", column + 1)
+}
+
+/// The last place in `text` up to byte `at` that is between two characters; JSON columns count bytes.
+fn boundary(text: &str, at: usize) -> usize {
+    (0..=at.min(text.len())).rev().find(|&at| text.is_char_boundary(at)).unwrap_or(0)
 }
 
 #[cfg(test)]

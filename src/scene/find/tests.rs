@@ -23,10 +23,11 @@ fn landscape(width: u32, height: u32) -> (Vec<[f32; 4]>, Frame) {
     let disc = |x: f64, y: f64, at: (f64, f64), r: f64| (x - at.0).hypot(y - at.1) < r;
     let radiance = |x: f64, y: f64| {
         let sun = if disc(x, y, (0.7, 0.5), 0.03) { 8000.0 } else { 0.0 };
-        let aureole = 40.0 * (-((x - 0.7).powi(2) + (y - 0.5).powi(2)) / (2.0 * 0.05 * 0.05)).exp();
+        let off = ((x - 0.7).powi(2) + (y - 0.5).powi(2)) / (2.0 * 0.05 * 0.05);
+        let aureole = if off < 30.0 { 40.0 * (-off).exp() } else { 0.0 };
         let lamps = if disc(x, y, (-1.0, -0.3), 0.02) || disc(x, y, (-0.8, -0.3), 0.015) { 900.0 } else { 0.0 };
         let window = if (x + 0.2).abs() < 0.12 && (y + 0.6).abs() < 0.05 { 300.0 } else { 0.0 };
-        0.2 + if y > 0.0 { 2.0 + y } else { 0.1 * (9.0 * x).sin() } + sun + aureole + lamps + window
+        0.2 + if y > 0.0 { 2.0 + y } else { 0.1 * (x - x.round()) } + sun + aureole + lamps + window
     };
     let frame = Frame::full(width, height);
     let samples = (0..16).map(|s| (f64::from(s % 4) / 4.0 - 0.375, f64::from(s / 4) / 4.0 - 0.375)).collect::<Vec<_>>();
