@@ -21,14 +21,15 @@ use serde::Serialize;
 /// The automatic threshold is at least this many times the mean luminance.
 pub const FLOOR: f64 = 4.0;
 
-/// A photo whose peak is less than this many times its mean (four stops) may be one whose highlights are clipped.
-pub const SHORT_RANGE: f64 = 16.0;
+/// A photo whose peak is less than this many times its mean (six stops) may be one whose highlights are clipped.
+pub const SHORT_RANGE: f64 = 64.0;
 
 /// Luminances above this share of the peak are "at the peak"; one step of an 8 bit sRGB code near white is 0.9 %.
 const AT_PEAK: f64 = 0.995;
 
-/// A photo is clipped if this share of its pixels is at the peak: more than a few pixels, less than a white wall.
-const CLIPPED: std::ops::RangeInclusive<f64> = 2e-4..=0.1;
+/// A photo is clipped if this share of its pixels is at the peak: more than a few pixels, less than a white wall, and no
+/// more than lights may cover by the other rules.
+const CLIPPED: std::ops::RangeInclusive<f64> = 2e-4..=1.0 / FLOOR;
 
 /// How a threshold was chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -179,7 +180,7 @@ mod tests {
 
     #[test]
     fn a_bright_sky_is_no_light() {
-        for share in [0.25, 0.5, 0.75] {
+        for share in [0.3, 0.5, 0.75] {
             let (threshold, rule) = automatic(&mixture(100_000, 0.2, &[(share, 3.0)]), REC709);
             assert_eq!(rule, Rule::Mean);
             assert!(threshold > 3.0, "a sky over {share} of the picture, {threshold}");
@@ -196,6 +197,10 @@ mod tests {
     fn clipped_highlights_of_a_display_referred_photo_are_lights() {
         let (threshold, rule) = automatic(&mixture(100_000, 0.3, &[(0.2, 0.8), (0.02, 1.0)]), REC709);
         assert_eq!((threshold, rule), (0.995, Rule::Clipped));
+        // Also in a low key; a few hot pixels are no highlight, and a clipped half of the picture is none either.
+        assert_eq!(automatic(&mixture(100_000, 0.02, &[(0.01, 0.3), (0.002, 1.0)]), REC709).1, Rule::Clipped);
+        assert_ne!(automatic(&mixture(100_000, 0.2, &[(0.2, 0.5), (0.0001, 1.0)]), REC709).1, Rule::Clipped);
+        assert_eq!(automatic(&mixture(100_000, 0.3, &[(0.5, 1.0)]), REC709).1, Rule::Mean);
     }
 
     #[test]

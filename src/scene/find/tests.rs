@@ -18,7 +18,7 @@ fn picture(width: u32, height: u32, lights: &[(u32, u32, [f32; 3])]) -> (Vec<[f3
 }
 
 /// A scene given by a function of the plane: a field under a bright sky, with a sun that has an aureole, two lamps and a
-/// window. Each pixel is the mean of 4 × 4 samples.
+/// window. Each pixel is the mean of some samples.
 fn landscape(width: u32, height: u32) -> (Vec<[f32; 4]>, Frame) {
     let disc = |x: f64, y: f64, at: (f64, f64), r: f64| (x - at.0).hypot(y - at.1) < r;
     let radiance = |x: f64, y: f64| {
@@ -30,10 +30,12 @@ fn landscape(width: u32, height: u32) -> (Vec<[f32; 4]>, Frame) {
         0.2 + if y > 0.0 { 2.0 + y } else { 0.1 * (x - x.round()) } + sun + aureole + lamps + window
     };
     let frame = Frame::full(width, height);
-    let samples = (0..16).map(|s| (f64::from(s % 4) / 4.0 - 0.375, f64::from(s / 4) / 4.0 - 0.375)).collect::<Vec<_>>();
+    let n = if width > 2000 { 2 } else { 4 };
+    let offset = |s: u32| (f64::from(s) + 0.5) / f64::from(n) - 0.5;
+    let samples: Vec<_> = (0..n * n).map(|s| (offset(s % n), offset(s / n))).collect();
     let pixel = |i: u32, j: u32| {
         let sample = |&(di, dj): &(f64, f64)| radiance(frame.x(f64::from(i) + di), frame.y(f64::from(j) + dj));
-        let l = (samples.iter().map(sample).sum::<f64>() / 16.0) as f32;
+        let l = (samples.iter().map(sample).sum::<f64>() / samples.len() as f64) as f32;
         [l, 0.9 * l, 0.7 * l, 1.0]
     };
     ((0..width * height).map(|p| pixel(p % width, p / width)).collect(), frame)
