@@ -4,6 +4,19 @@ use glam::DVec2;
 
 use crate::series::Bell;
 
+mod file;
+mod find;
+mod lens;
+mod number;
+pub mod presets;
+mod regions;
+mod tables;
+pub mod threshold;
+
+pub use file::{SceneFile, read_lens, read_lights, read_scene};
+pub use find::{FindOptions, Found, find};
+pub use lens::{Lens, ghosts};
+
 /// A bright source.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Light {

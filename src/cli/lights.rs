@@ -1,0 +1,249 @@
+//! `vglare lights`: the lights found in a photo.
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use comfy_table::{CellAlignment, Table, presets};
+use serde::Serialize;
+
+use super::stdout;
+use crate::Result;
+use crate::frame::Frame;
+use crate::photo;
+use crate::scene::threshold::{FLOOR, Rule};
+use crate::scene::{FindOptions, Found, Light, find};
+
+/// Find the lights in a photo
+///
+/// Prints each connected region of bright pixels as a light: where its centre is, what flux it has and how large it is.
+/// Positions and sizes are in half picture heights from the picture's centre, x to the right and y up; flux is radiance
+/// times area, in the photo's unit.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// The photo: OpenEXR, Radiance HDR, PFM, TIFF, PNG or JPEG
+    photo: PathBuf,
+
+    /// Print JSON, which can be edited and read back as a file of lights
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    find: FindArgs,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  vglare lights night.exr                         What glares in this photo?
+  vglare lights night.exr --threshold 50          Only what is brighter than 50
+  vglare lights night.exr --json > lights.json    To be edited and used again";
+
+/// What counts as a light in a photo.
+#[derive(Debug, Clone, clap::Args)]
+#[command(next_help_heading = "Lights in the photo")]
+pub struct FindArgs {
+    /// Pixels of this luminance or more are light: scene-linear, in the photo's unit, 0 or more. By default the value
+    /// that splits the photo's flux best into light and scene, at least 4 times its mean luminance
+    #[arg(long, value_name = "L", value_parser = not_negative)]
+    threshold: Option<f64>,
+
+    /// Regions that are this close to a brighter one join it, in half picture heights; 0 merges none
+    #[arg(long, value_name = "R", default_value_t = FindOptions::default().merge, value_parser = not_negative)]
+    merge: f64,
+
+    /// At most so many lights, the brightest
+    #[arg(long, value_name = "N", default_value_t = FindOptions::default().max_lights)]
+    max_lights: usize,
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x.is_finite() && x >= 0.0 => Ok(x),
+        _ => Err("expected a finite number that is not negative".to_owned()),
+    }
+}
+
+impl From<&FindArgs> for FindOptions {
+    fn from(&FindArgs { threshold, merge, max_lights }: &FindArgs) -> Self {
+        Self { threshold, merge, max_lights }
+    }
+}
+
+/// Reads the photo, finds its lights and prints them.
+///
+/// # Errors
+///
+/// Where the photo cannot be read or standard output cannot be written.
+pub fn run(args: &Args) -> Result<()> {
+    let photo = photo::read(&args.photo)?;
+    let found = find(&photo.pixels, &photo.frame, photo.luminance_weights(), &(&args.find).into());
+    stdout::print(|out| if args.json { json(out, &found) } else { table(out, &found, &photo.frame) })
+}
+
+/// Found lights as `scene::read_lights` reads them.
+#[derive(Serialize)]
+struct Json {
+    threshold: f64,
+    rule: Rule,
+    regions: usize,
+    merged: usize,
+    dropped: usize,
+    dropped_share: f64,
+    lights: Vec<LightJson>,
+}
+
+#[derive(Serialize)]
+struct LightJson {
+    position: [f64; 2],
+    flux: [f64; 3],
+    size: f64,
+}
+
+impl From<&Light> for LightJson {
+    fn from(light: &Light) -> Self {
+        Self { position: light.position.to_array(), flux: light.flux, size: light.size }
+    }
+}
+
+fn json(out: &mut dyn Write, found: &Found) -> io::Result<()> {
+    let json = Json {
+        threshold: found.threshold,
+        rule: found.rule,
+        regions: found.regions,
+        merged: found.merged(),
+        dropped: found.dropped,
+        dropped_share: found.dropped_share,
+        lights: found.lights.iter().map(LightJson::from).collect(),
+    };
+    serde_json::to_writer_pretty(&mut *out, &json)?;
+    writeln!(out)
+}
+
+fn table(out: &mut dyn Write, found: &Found, frame: &Frame) -> io::Result<()> {
+    if !found.lights.is_empty() {
+        let mut table = Table::new();
+        table.load_style(presets::NOTHING);
+        table.set_header(["#", "x", "y", "column", "row", "flux R", "flux G", "flux B", "size", "share %"]);
+        for (k, (light, share)) in found.lights.iter().zip(&found.shares).enumerate() {
+            table.add_row(row(k + 1, light, *share, frame));
+        }
+        table.column_iter_mut().for_each(|column| column.set_cell_alignment(CellAlignment::Right));
+        writeln!(out, "{}", table.trim_fmt())?;
+    }
+    writeln!(out, "{}", summary(found))
+}
+
+fn row(number: usize, light: &Light, share: f64, frame: &Frame) -> [String; 10] {
+    let pixel = frame.pixel(light.position);
+    let [r, g, b] = light.flux.map(short);
+    let (x, y) = (format!("{:.4}", light.position.x), format!("{:.4}", light.position.y));
+    let (column, row) = (format!("{:.1}", pixel.x), format!("{:.1}", pixel.y));
+    [number.to_string(), x, y, column, row, r, g, b, format!("{:.4}", light.size), format!("{:.2}", 100.0 * share)]
+}
+
+fn summary(found: &Found) -> String {
+    let threshold = short(found.threshold);
+    let rule = match found.rule {
+        Rule::Given => "as given".to_owned(),
+        Rule::Split => "which splits the photo's flux best into light and scene".to_owned(),
+        Rule::Mean => format!("{FLOOR} times the mean luminance"),
+        Rule::Clipped => "just below the level at which highlights are clipped".to_owned(),
+    };
+    if found.regions == 0 {
+        return format!("No lights: no pixel reaches the threshold luminance {threshold}, {rule}.");
+    }
+    let (regions, lights, merged) = (found.regions, found.lights.len(), found.merged());
+    let dropped = match found.dropped {
+        0 => "none dropped".to_owned(),
+        n => format!("{n} dropped with {:.2} % of the flux", 100.0 * found.dropped_share),
+    };
+    format!("Threshold luminance {threshold}, {rule}. {regions} regions: {lights} lights, {merged} merged, {dropped}.")
+}
+
+/// Four significant digits.
+fn short(x: f64) -> String {
+    if x == 0.0 {
+        return "0".to_owned();
+    }
+    match x.abs().log10().floor() as i32 {
+        exponent @ -4..=5 => format!("{x:.*}", (3 - exponent).max(0) as usize),
+        _ => format!("{x:.3e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::read_lights;
+
+    #[derive(clap::Parser)]
+    struct Cli {
+        #[command(flatten)]
+        args: Args,
+    }
+
+    fn parsed(args: &[&str]) -> Result<Args, clap::Error> {
+        clap::Parser::try_parse_from(["lights"].iter().chain(args)).map(|Cli { args }| args)
+    }
+
+    fn found() -> (Found, Frame) {
+        let frame = Frame::full(40, 20);
+        let mut pixels = vec![[0.1, 0.1, 0.1, 1.0]; 800];
+        pixels[2 * 40 + 30] = [900.1, 800.2, 700.3, 1.0];
+        pixels[12 * 40 + 5] = [50.0, 30.0, 0.0, 1.0];
+        pixels[18 * 40 + 5] = [500.0, 30.0, 0.0, 1.0];
+        let options = FindOptions { max_lights: 2, ..FindOptions::default() };
+        (find(&pixels, &frame, [0.2126, 0.7152, 0.0722], &options), frame)
+    }
+
+    fn printed(print: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> String {
+        let mut out = Vec::new();
+        print(&mut out).unwrap();
+        String::from_utf8(out).unwrap()
+    }
+
+    #[test]
+    fn options_are_those_given_or_the_librarys() {
+        let options = |args: &[&str]| FindOptions::from(&parsed(args).unwrap().find);
+        assert_eq!(options(&["a.exr"]), FindOptions::default());
+        let given = options(&["a.exr", "--threshold", "2.5", "--merge", "0", "--max-lights", "7"]);
+        assert_eq!(given, FindOptions { threshold: Some(2.5), merge: 0.0, max_lights: 7 });
+        for bad in [["--threshold", "nan"], ["--threshold=-1", "--json"], ["--merge", "inf"], ["--max-lights", "-1"]] {
+            assert!(parsed(&["a.exr", bad[0], bad[1]]).is_err(), "{bad:?}");
+        }
+    }
+
+    #[test]
+    fn the_json_is_read_back_bit_for_bit() {
+        let (found, _) = found();
+        let path = tempfile::NamedTempFile::new().unwrap().into_temp_path();
+        std::fs::write(&path, printed(|out| json(out, &found))).unwrap();
+        assert_eq!(found.lights.len(), 2);
+        assert_eq!(read_lights(&path).unwrap(), found.lights);
+    }
+
+    #[test]
+    fn the_table_has_a_row_for_each_light_and_a_summary() {
+        let (found, frame) = found();
+        let text = printed(|out| table(out, &found, &frame));
+        assert!(text.contains("30.0") && text.contains("18.0"), "{text}");
+        let summary = text.lines().last().unwrap();
+        assert!(summary.contains("3 regions: 2 lights, 0 merged, 1 dropped with "), "{text}");
+    }
+
+    #[test]
+    fn a_photo_without_lights_says_so() {
+        let frame = Frame::full(2, 2);
+        let found = find(&[[0.5; 4]; 4], &frame, [0.2126, 0.7152, 0.0722], &FindOptions::default());
+        let text = printed(|out| table(out, &found, &frame));
+        assert!(text.starts_with("No lights: ") && text.lines().count() == 1, "{text}");
+    }
+
+    #[test]
+    fn numbers_have_four_digits() {
+        let cases = [(0.0, "0"), (13.5, "13.50"), (0.00012344, "0.0001234"), (123456.7, "123457"), (-2.0, "-2.000")];
+        for (x, text) in cases.into_iter().chain([(1e-9, "1.000e-9"), (2.5e12, "2.500e12")]) {
+            assert_eq!(short(x), text);
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! `vglare presets`: the lenses that come with vglare.
+
+use std::io::{self, Write};
+
+use comfy_table::{CellAlignment, Table, presets as styles};
+use serde::Serialize;
+
+use super::stdout;
+use crate::Result;
+use crate::scene::Lens;
+use crate::scene::presets::{self, DEFAULT_PRESET};
+
+/// List the lenses that come with vglare, or print one of them
+///
+/// A lens is a table of ghosts, as it turns any light into them. The veil is the part of a light's flux that they carry.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// Print the lens file of this preset instead, to start a lens of your own from
+    name: Option<String>,
+
+    /// Print the list as JSON
+    #[arg(long, conflicts_with = "name")]
+    json: bool,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  vglare presets                           What is there?
+  vglare presets anamorphic > mine.toml    Begin a lens file of your own";
+
+/// Prints the list, or the lens file of the preset that is named.
+///
+/// # Errors
+///
+/// [`crate::Error::UnknownPreset`], or where standard output cannot be written.
+pub fn run(args: &Args) -> Result<()> {
+    if let Some(name) = &args.name {
+        let preset = presets::find(name)?;
+        return stdout::print(|out| out.write_all(preset.toml.as_bytes()));
+    }
+    let lenses = presets::all().iter().map(|preset| preset.lens()).collect::<Result<Vec<_>>>()?;
+    stdout::print(|out| if args.json { json(out, &lenses) } else { table(out, &lenses) })
+}
+
+#[derive(Serialize)]
+struct Entry<'a> {
+    name: &'a str,
+    default: bool,
+    ghosts: usize,
+    /// Part of a light's luminous flux, 0 to 1.
+    veil: f64,
+    description: &'a str,
+}
+
+impl<'a> From<&'a Lens> for Entry<'a> {
+    fn from(lens: &'a Lens) -> Self {
+        Self {
+            name: &lens.name,
+            default: lens.name == DEFAULT_PRESET,
+            ghosts: lens.ghosts.len(),
+            veil: lens.veiling_share(),
+            description: &lens.description,
+        }
+    }
+}
+
+fn json(out: &mut dyn Write, lenses: &[Lens]) -> io::Result<()> {
+    serde_json::to_writer_pretty(&mut *out, &lenses.iter().map(Entry::from).collect::<Vec<_>>())?;
+    writeln!(out)
+}
+
+fn table(out: &mut dyn Write, lenses: &[Lens]) -> io::Result<()> {
+    let mut table = Table::new();
+    table.load_style(styles::NOTHING);
+    table.set_header(["name", "ghosts", "veil %", "description"]);
+    for Entry { name, ghosts, veil, description, .. } in lenses.iter().map(Entry::from) {
+        let description = description.rsplit_once("; veil ").map_or(description, |(text, _)| text);
+        table.add_row([name, &ghosts.to_string(), &format!("{:.1}", 100.0 * veil), description]);
+    }
+    table.column_iter_mut().skip(1).take(2).for_each(|column| column.set_cell_alignment(CellAlignment::Right));
+    writeln!(out, "{}\n\nWhere no lens is named, it is {DEFAULT_PRESET}.", table.trim_fmt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_names_every_preset_and_the_default() {
+        let lenses: Vec<_> = presets::all().iter().map(|preset| preset.lens().unwrap()).collect();
+        let (mut text, mut list) = (Vec::new(), Vec::new());
+        table(&mut text, &lenses).unwrap();
+        json(&mut list, &lenses).unwrap();
+        let text = String::from_utf8(text).unwrap();
+        assert!(lenses.iter().all(|lens| text.contains(&lens.name)), "{text}");
+        let list: Vec<serde_json::Value> = serde_json::from_slice(&list).unwrap();
+        assert_eq!(list.len(), lenses.len());
+        assert_eq!(list.iter().filter(|entry| entry["default"] == true).count(), 1);
+    }
+}

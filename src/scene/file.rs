@@ -1,0 +1,171 @@
+//! Scene, light and lens files, in TOML.
+//!
+//! ```toml
+//! description = "a lamp and a blob"  # optional
+//! period = [4.0, 3.0]         # optional, of the series, in x and y; planned otherwise
+//! degree = [32, 24]           # optional, 1 to 4096; planned otherwise
+//!
+//! [[light]]
+//! position = [0.3, 0.4]       # x, y; may lie outside the picture
+//! flux = [12.0, 10.0, 8.0]    # radiance × area, RGB, 0 or more
+//! size = 0.0                  # optional: rms distance from the centre along one axis; 0 is a point
+//!
+//! [[ghost]]
+//! bell = "gaussian"           # optional
+//! center = [0.25, -0.5]
+//! size = 0.2                  # σ of a Gaussian; or [σx, σy]
+//! radiance = [1.0, 0.8, 0.5]  # at its centre; may be negative, which takes light away
+//!
+//! [[lens_ghost]]
+//! bell = "gaussian"           # optional
+//! along = -0.7                # centre = along × the light's position
+//! size = 0.15                 # σ for a light that is a point; or [σx, σy]
+//! tint = [1.0, 0.9, 0.7]      # optional, white otherwise; 0 or more
+//! share = 0.01                # of the light's flux; 0 or more
+//! ```
+//!
+//! Lengths are in half picture heights, the origin is the picture's centre, y points up. A lens file has `description`
+//! and `[[lens_ghost]]` only, a light file `[[light]]` only; a light file may also be what `vglare lights --json` prints.
+
+use std::fs;
+use std::ops::Range;
+use std::path::Path;
+
+use glam::DVec2;
+use serde::de::DeserializeOwned;
+
+use super::lens::Lens;
+use super::tables::{LensTable, LightsJson, LightsTable, SceneTable};
+use super::{Ghost, LensGhost, Light};
+use crate::{Error, Result};
+
+/// What a scene file says. Everything is optional in the file.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SceneFile {
+    /// One line for people.
+    pub description: String,
+    /// Period of the series in x and y, half picture heights; planned where it is `None`.
+    pub period: Option<DVec2>,
+    /// Highest harmonic in x and y, 1 to 4096; planned where it is `None`.
+    pub degree: Option<[u32; 2]>,
+    /// Lights, in the file's order.
+    pub lights: Vec<Light>,
+    /// Ghosts that no light makes.
+    pub ghosts: Vec<Ghost>,
+    /// The lens that the lights are seen through; empty where the file names none.
+    pub lens_ghosts: Vec<LensGhost>,
+}
+
+/// Reads a scene file.
+///
+/// # Errors
+///
+/// [`Error::SceneFile`] with the line, the key and what was expected there, or why the file cannot be read.
+pub fn read_scene(path: &Path) -> Result<SceneFile> {
+    let table: SceneTable = from_toml(path, &text(path)?)?;
+    Ok(SceneFile {
+        description: table.description,
+        period: table.period.map(|[x, y]| DVec2::new(x.0, y.0)),
+        degree: table.degree.map(|degree| degree.map(|d| d.0)),
+        lights: converted(table.lights),
+        ghosts: converted(table.ghosts),
+        lens_ghosts: converted(table.lens_ghosts),
+    })
+}
+
+/// Reads a file of lights: TOML with `[[light]]` tables, or the JSON that `vglare lights --json` prints.
+///
+/// # Errors
+///
+/// Like [`read_scene`].
+pub fn read_lights(path: &Path) -> Result<Vec<Light>> {
+    let text = text(path)?;
+    // No TOML document begins with a brace, and all that we print as JSON does.
+    if text.trim_start_matches('\u{feff}').trim_start().starts_with('{') {
+        let lights: LightsJson = serde_json::from_str(text.trim_start_matches('\u{feff}'))
+            .map_err(|e| Error::scene_file(path, json_reason(&text, &e)))?;
+        return Ok(converted(lights.lights));
+    }
+    let table: LightsTable = from_toml(path, &text)?;
+    Ok(converted(table.lights))
+}
+
+/// Reads a lens file. The lens is called like the file, without the extension.
+///
+/// # Errors
+///
+/// Like [`read_scene`]; also for a lens without ghosts.
+pub fn read_lens(path: &Path) -> Result<Lens> {
+    let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    lens(path, &name, &text(path)?)
+}
+
+/// The lens that `text` describes, which came from `path`.
+pub(super) fn lens(path: &Path, name: &str, text: &str) -> Result<Lens> {
+    let table: LensTable = from_toml(path, text)?;
+    if table.ghosts.is_empty() {
+        return Err(Error::scene_file(path, "the lens has no ghosts: expected at least one [[lens_ghost]]"));
+    }
+    Ok(Lens { name: name.to_owned(), description: table.description, ghosts: converted(table.ghosts) })
+}
+
+fn converted<T: Into<U>, U>(tables: Vec<T>) -> Vec<U> {
+    tables.into_iter().map(Into::into).collect()
+}
+
+fn text(path: &Path) -> Result<String> {
+    let bytes = fs::read(path).map_err(|e| Error::scene_file(path, format_args!("cannot be read: {e}")))?;
+    String::from_utf8(bytes).map_err(|e| {
+        let line = 1 + e.as_bytes()[..e.utf8_error().valid_up_to()].iter().filter(|&&b| b == b'\n').count();
+        Error::scene_file(path, format_args!("line {line}: this is not UTF-8 text"))
+    })
+}
+
+fn from_toml<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T> {
+    toml::from_str(text).map_err(|mut e: toml::de::Error| {
+        let span = e.span().unwrap_or(0..0);
+        // Without the text, toml prints the message and the keys that lead to it, and we show the place ourselves.
+        e.set_input(None);
+        let message = e.to_string();
+        Error::scene_file(path, pointed(text, span, &message.trim_end().replace("\nin `", " in `")))
+    })
+}
+
+fn json_reason(text: &str, error: &serde_json::Error) -> String {
+    let message = error.to_string();
+    let message = message.rsplit_once(" at line ").map_or(message.as_str(), |(message, _)| message);
+    let line_start: usize = text.split_inclusive('\n').take(error.line().saturating_sub(1)).map(str::len).sum();
+    let at = (line_start + error.column().saturating_sub(1)).min(text.len());
+    pointed(text, at..at, message)
+}
+
+/// The message, where it applies, and the line itself with a mark below:
+///
+/// ```text
+/// line 3, column 8: expected a positive finite number, found -1 in `ghost.size`
+///   3 | size = -1
+///     |        ^^
+/// ```
+fn pointed(text: &str, span: Range<usize>, message: &str) -> String {
+    let start = boundary(text, span.start);
+    let line_start = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
+    let line = text[line_start..].lines().next().unwrap_or_default();
+    let number = text[..line_start].matches('\n').count() + 1;
+    let column = text[line_start..start].chars().count();
+    let end = boundary(text, span.end.min(line_start + line.len()).max(start));
+    let marks = "^".repeat(text[start..end].chars().count().max(1));
+    // A line may be megabytes long where someone wrote all on one; then its place must do.
+    if line.len() > 160 {
+        return format!("line {number}, column {}: {message}", column + 1);
+    }
+    let (gutter, line, indent) = (" ".repeat(number.to_string().len()), line.replace('\t', " "), " ".repeat(column));
+    format!("line {number}, column {}: {message}\n  {number} | {line}\n  {gutter} | {indent}{marks}", column + 1)
+}
+
+/// The last place in `text` up to byte `at` that is between two characters; JSON columns count bytes.
+fn boundary(text: &str, at: usize) -> usize {
+    (0..=at.min(text.len())).rev().find(|&at| text.is_char_boundary(at)).unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,197 @@
+use super::*;
+use crate::series::Bell;
+
+/// A file in a folder of its own; both are gone when it is dropped.
+fn file(name: &str, content: impl AsRef<[u8]>) -> (tempfile::TempDir, std::path::PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    fs::write(&path, content).unwrap();
+    (folder, path)
+}
+
+/// The reason why `content` is refused as a scene, after a check that the error names the file.
+fn refused(content: impl AsRef<[u8]>) -> String {
+    let (_folder, path) = file("bad.toml", content);
+    match read_scene(&path) {
+        Err(Error::SceneFile { path: named, reason }) if named == path => reason,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn assert_refused(content: &str, expected: &[&str]) {
+    let reason = refused(content);
+    for part in expected {
+        assert!(reason.contains(part), "{part:?} is not in:\n{reason}");
+    }
+}
+
+const FULL: &str = r#"
+period = [4.0, 3]
+degree = [32, 24]
+[[light]]
+position = [0.3, -2]
+flux = [12, 10.0, 8.0]
+[[light]]
+position = [0, 0]
+flux = [0, 0, 0]
+size = 1
+[[ghost]]
+bell = "gaussian"
+center = [0.25, -0.5]
+size = [0.2, 1]
+radiance = [1.0, -0.8, 0]
+[[lens_ghost]]
+along = -0.7
+size = 0.15
+tint = [1.0, 0.9, 0.7]
+share = 0.01
+[[lens_ghost]]
+along = 1
+size = 2
+share = 1
+"#;
+
+#[test]
+fn a_full_scene_is_read_with_whole_numbers_and_defaults() {
+    let (_folder, path) = file("full.toml", FULL);
+    let scene = read_scene(&path).unwrap();
+    assert_eq!((scene.period, scene.degree), (Some(DVec2::new(4.0, 3.0)), Some([32, 24])));
+    assert_eq!(scene.lights[0], Light { position: DVec2::new(0.3, -2.0), flux: [12.0, 10.0, 8.0], size: 0.0 });
+    assert_eq!(scene.lights[1].size, 1.0);
+    let (bell, size) = (Bell::Gaussian, DVec2::new(0.2, 1.0));
+    let ghost = Ghost { bell, center: DVec2::new(0.25, -0.5), size, radiance: [1.0, -0.8, 0.0] };
+    assert_eq!(scene.ghosts, [ghost]);
+    let size = DVec2::splat(0.15);
+    assert_eq!(scene.lens_ghosts[0], LensGhost { bell, along: -0.7, size, tint: [1.0, 0.9, 0.7], share: 0.01 });
+    assert_eq!((scene.lens_ghosts[1].tint, scene.lens_ghosts[1].size), ([1.0; 3], DVec2::splat(2.0)));
+}
+
+#[test]
+fn an_empty_file_is_an_empty_scene() {
+    let (_folder, path) = file("empty.toml", "");
+    assert_eq!(read_scene(&path).unwrap(), SceneFile::default());
+}
+
+#[test]
+fn numbers_that_a_key_does_not_take_are_shown_in_their_line() {
+    let ghost = |size: &str| format!("[[ghost]]\ncenter = [0, 0]\nsize = {size}\nradiance = [1, 1, 1]\n");
+    for bad in ["0", "-1", "0.0", "nan", "inf", "-inf", "1e99", "[0.1, 0]", "[nan, 1]"] {
+        assert_refused(&ghost(bad), &["line 3, column ", "ghost.size", "positive finite number", "3 | size = "]);
+    }
+    for bad in ["\"wide\"", "true", "[1]", "[1, 2, 3]", "[]", "{ x = 1 }"] {
+        assert_refused(&ghost(bad), &["line 3, column ", "ghost.size", "a positive size or two, [x, y]"]);
+    }
+    let light = |flux: &str| format!("# lamps\n\n[[light]]\nposition = [0, 0]\nflux = {flux}\n");
+    for bad in ["[1, -1, 1]", "[1, nan, 1]", "[1, 1, inf]"] {
+        assert_refused(&light(bad), &["line 5, column ", "light.flux", "finite number that is not negative"]);
+    }
+    assert_refused(&light("[1, 1]"), &["line 5, column 8", "an array of length 3"]);
+    assert_refused(&light("[\n  1,\n  \"a\",\n  1,\n]"), &["line 7, column 3", "not negative", "7 |   \"a\""]);
+    assert_refused("[[light]]\nposition = [nan, 0]\nflux = [1, 1, 1]", &["line 2, column 13", "a finite number"]);
+    assert_refused("period = [4, 0]", &["line 1, column 14", "a positive finite number", "period"]);
+    assert_refused("[[lens_ghost]]\nalong = 1\nsize = 1\nshare = -0.1", &["line 4, column 9", "lens_ghost.share"]);
+}
+
+#[test]
+fn the_mark_is_below_the_number() {
+    let reason = refused("[[ghost]]\ncenter = [0, 0]\nradiance = [1, 1, 1]\n\tsize = -25 # é");
+    let expected = "line 4, column 9: expected a positive finite number, found -25 in `ghost.size`\n  \
+                    4 |  size = -25 # é\n    |         ^^^";
+    assert_eq!(reason, expected);
+}
+
+#[test]
+fn degrees_are_whole_numbers_up_to_4096() {
+    for bad in ["[0, 1]", "[1, 4097]", "[-3, 1]", "[1.5, 1]", "[1, 99999999999]", "[1, \"2\"]"] {
+        assert_refused(&format!("\ndegree = {bad}"), &["line 2, column ", "a whole number from 1 to 4096", "degree"]);
+    }
+    let (_folder, path) = file("degree.toml", "degree = [1, 4096]");
+    assert_eq!(read_scene(&path).unwrap().degree, Some([1, 4096]));
+}
+
+#[test]
+fn unknown_and_missing_keys_are_named() {
+    let light = "[[light]]\nposition = [0, 0]\nflux = [1, 1, 1]\n";
+    assert_refused(&format!("{light}colour = [1, 1, 1]"), &["line 4, column 1", "colour", "position", "flux", "size"]);
+    assert_refused("[[lights]]\nposition = [0, 0]", &["line 1, column 3", "lights", "light", "lens_ghost"]);
+    assert_refused("\n[[light]]\nposition = [0, 0]", &["line 2", "missing field `flux`"]);
+    assert_refused(
+        "[[ghost]]\nsize = 1\ncenter = [0, 0]\nradiance = [0, 0, 0]\n\n[[ghost]]\nsize = 1\ncenter = [0, 0]\n",
+        &["line 6", "missing field `radiance`"],
+    );
+    assert_refused(
+        "[[ghost]]\nbell = \"square\"\ncenter = [0, 0]\nsize = 1\nradiance = [1, 1, 1]",
+        &["line 2, column 8", "square", "gaussian"],
+    );
+    assert_refused("light = 3", &["line 1, column 9", "light"]);
+    assert_refused("[light]\nposition = [0, 0]", &["line 1", "light"]);
+}
+
+#[test]
+fn what_is_no_toml_is_shown_in_its_line() {
+    assert_refused("period = [4, 3]\ndegree = [1, 2\n", &["line 2, column 15", "unclosed array"]);
+    assert_refused("period = [4, 3]\nperiod = [4, 3]", &["line 2, column 1", "duplicate key"]);
+    assert_refused("\n\nlight light", &["line 3, column 7"]);
+    assert_refused("{\"lights\": []}", &["line 1, column 1"]);
+    let reason = refused(b"# ok\nperiod = [1, 2]\n# caf\xe9\n");
+    assert_eq!(reason, "line 3: this is not UTF-8 text");
+    let long = format!("period = [{}, -1]", "0".repeat(5000));
+    assert!(refused(&long).len() < 300);
+}
+
+#[test]
+fn files_that_cannot_be_read_say_why() {
+    let folder = tempfile::tempdir().unwrap();
+    for path in [folder.path().to_owned(), folder.path().join("missing.toml")] {
+        for error in [read_scene(&path).unwrap_err(), read_lights(&path).unwrap_err(), read_lens(&path).unwrap_err()] {
+            let message = error.to_string();
+            assert!(message.contains("cannot be read: ") && message.starts_with(path.to_str().unwrap()), "{message}");
+        }
+    }
+}
+
+#[test]
+fn lights_are_read_from_toml_and_json() {
+    let expected = [Light { position: DVec2::new(0.5, -0.25), flux: [1.0, 2.0, 3.0], size: 0.0 }];
+    let toml = "[[light]]\nposition = [0.5, -0.25]\nflux = [1, 2, 3]\n";
+    let json = "\u{feff} {\n \"threshold\": 2, \"lights\": [{\"position\": [0.5, -0.25], \"flux\": [1, 2, 3]}]}";
+    for (name, content) in [("a.toml", toml), ("b.json", json), ("no-extension", json)] {
+        let (_folder, path) = file(name, content);
+        assert_eq!(read_lights(&path).unwrap(), expected, "{name}");
+    }
+    let (_folder, path) = file("none.json", "{\"lights\": []}");
+    assert_eq!(read_lights(&path).unwrap(), []);
+}
+
+#[test]
+fn errors_in_json_have_a_line_too() {
+    let flux =
+        |flux: &str| format!("{{\n  \"lights\": [\n    {{\"position\": [0, 0],\n     \"flux\": {flux}}}\n  ]\n}}");
+    let cases = [
+        (flux("[1, -2, 3]"), "line 4", "not negative, found -2"),
+        (flux("[1, 2]"), "line 4", "an array of length 3"),
+        (flux("[1, 2, \"é\"]"), "line 4", "not negative"),
+        (flux("[1, 2, 3], \"colour\": 1"), "line 4", "unknown field `colour`"),
+        ("{\n\"light\": []\n}".to_owned(), "line 3", "missing field `lights`"),
+        ("{\n\"lights\": [".to_owned(), "line 2", "EOF"),
+        ("{".to_owned(), "line 1", "EOF"),
+    ];
+    for (content, line, what) in cases {
+        let (_folder, path) = file("bad.json", &content);
+        let message = read_lights(&path).unwrap_err().to_string();
+        assert!(message.contains(line) && message.contains(what), "{content}\n{message}");
+    }
+}
+
+#[test]
+fn a_lens_is_called_like_its_file_and_has_ghosts() {
+    let preset = crate::scene::presets::all()[0];
+    let (_folder, path) = file("my lens.v2.toml", preset.toml);
+    let lens = read_lens(&path).unwrap();
+    assert_eq!((lens.name.as_str(), &lens.ghosts), ("my lens.v2", &preset.lens().unwrap().ghosts));
+    for (content, what) in [("lens_ghost = []", "no ghosts"), ("", "lens_ghost"), ("[[light]]", "light")] {
+        let (_folder, path) = file("empty.toml", content);
+        let message = read_lens(&path).unwrap_err().to_string();
+        assert!(message.contains(what), "{message}");
+    }
+}

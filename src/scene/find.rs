@@ -1,0 +1,180 @@
+//! Lights found in a photo.
+//!
+//! Pixels above a threshold are gathered into connected regions; regions that lie close together become one light; the
+//! brightest are kept. A light has its region's flux, centroid and extent, so a window or the sun with its aureole is
+//! one light with a size.
+
+use std::cmp::Ordering;
+use std::collections::HashMap;
+
+use glam::{DVec2, I64Vec2};
+
+use super::Light;
+use super::regions::{Moments, regions};
+use super::threshold::{self, Rule};
+use crate::frame::Frame;
+
+/// What counts as a light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FindOptions {
+    /// Linear luminance, in the photo's unit, from which on a pixel is light; 0 takes every pixel that is not black.
+    /// `None` lets the photo decide: see [`threshold`].
+    pub threshold: Option<f64>,
+    /// A region whose centroid is no farther than this from a brighter one joins it; half picture heights. The brighter
+    /// one counts as a disc of its own rms extent. 0 merges none.
+    pub merge: f64,
+    /// At most so many lights are kept, the brightest.
+    pub max_lights: usize,
+}
+
+impl Default for FindOptions {
+    /// 0.02, the width of a thumb at arm's length in a normal lens, and 64 lights.
+    fn default() -> Self {
+        Self { threshold: None, merge: 0.02, max_lights: 64 }
+    }
+}
+
+/// The lights of a photo, and what was left out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Found {
+    /// The lights that were kept, brightest first.
+    pub lights: Vec<Light>,
+    /// Each light's share of the flux of all regions, weighted by luminance.
+    pub shares: Vec<f64>,
+    /// The linear luminance from which on a pixel is light.
+    pub threshold: f64,
+    /// How the threshold was chosen.
+    pub rule: Rule,
+    /// Connected regions before any were merged.
+    pub regions: usize,
+    /// Lights beyond [`FindOptions::max_lights`] that were dropped.
+    pub dropped: usize,
+    /// Their share of the flux of all regions, 0 to 1, weighted by luminance.
+    pub dropped_share: f64,
+}
+
+impl Found {
+    /// How many regions joined a brighter one.
+    pub fn merged(&self) -> usize {
+        self.regions - self.lights.len() - self.dropped
+    }
+}
+
+/// Finds the lights among the stored pixels of a photo, brightest first.
+///
+/// `weights` are those of the photo's linear R, G and B in luminance. A pixel with a channel that is not finite is never
+/// light, and a negative channel counts as 0. Alpha is not looked at: a flame may well have none.
+///
+/// # Panics
+///
+/// If there are not as many pixels as `frame.window` holds.
+pub fn find(pixels: &[[f32; 4]], frame: &Frame, weights: [f64; 3], options: &FindOptions) -> Found {
+    assert_eq!(pixels.len(), frame.window.pixels(), "the pixels do not fill the frame's window");
+    let weights = weights.map(|w| w as f32);
+    let (threshold, rule) = match options.threshold {
+        Some(given) => (given, Rule::Given),
+        None => threshold::automatic(pixels, weights),
+    };
+    let mut found = match frame.window.width {
+        0 => Vec::new(),
+        width => regions(pixels, width as usize, weights, threshold as f32),
+    };
+    let regions = found.len();
+    let total = found.iter().map(|region| region.weight).sum::<f64>().max(f64::MIN_POSITIVE);
+    found.sort_by(brightest_first);
+    // No two pixels are farther apart than a diagonal.
+    let radius =
+        (options.merge / frame.pixel_size()).min(f64::from(frame.window.width) + f64::from(frame.window.height));
+    let mut lights = merge(found, radius, pixels.len());
+    lights.sort_by(brightest_first);
+    let dropped = lights.split_off(options.max_lights.min(lights.len()));
+    Found {
+        lights: lights.iter().map(|region| light(region, frame)).collect(),
+        shares: lights.iter().map(|region| region.weight / total).collect(),
+        threshold,
+        rule,
+        regions,
+        dropped: dropped.len(),
+        dropped_share: dropped.iter().fold(0.0, |sum, region| sum + region.weight / total),
+    }
+}
+
+/// Equally bright ones from the top, then from the left.
+fn brightest_first(a: &Moments, b: &Moments) -> Ordering {
+    let brighter = b.weight.total_cmp(&a.weight);
+    brighter.then(a.mean.y.total_cmp(&b.mean.y)).then(a.mean.x.total_cmp(&b.mean.x))
+}
+
+/// From pixels of the window to the picture plane.
+fn light(region: &Moments, frame: &Frame) -> Light {
+    let side = frame.pixel_size();
+    let (column, row) = (f64::from(frame.window.x) + region.mean.x, f64::from(frame.window.y) + region.mean.y);
+    // A pixel is a square of light and no point: 1/12 is the variance of a uniform density of width 1.
+    let variance = region.variance() + 1.0 / 12.0;
+    Light {
+        position: frame.position(column, row),
+        flux: region.flux.map(|sum| sum * side * side),
+        size: variance.sqrt() * side,
+    }
+}
+
+/// Lets each region, brightest first, join the nearest one kept so far that it is close to, or keeps it.
+///
+/// A region is close to a kept one if its centroid is within `radius` pixels of the disc that has the kept one's
+/// centroid and rms extent, so that the panes of a window come together. The disc is that of the kept region alone
+/// and does not grow, so that a light does not wander off along a string of lamps.
+fn merge(regions: Vec<Moments>, radius: f64, pixels: usize) -> Vec<Moments> {
+    if radius.is_nan() || radius <= 0.0 || regions.is_empty() {
+        return regions;
+    }
+    let mut cells = Cells::new(radius.max((pixels as f64 / regions.len() as f64).sqrt()));
+    let (mut kept, mut discs): (Vec<Moments>, Vec<(DVec2, f64)>) = Default::default();
+    for region in regions {
+        let distance = |&at: &usize| discs[at].0.distance(region.mean);
+        let close = cells.at(region.mean).iter().filter(|at| distance(at) <= discs[**at].1);
+        if let Some(&at) = close.min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b))) {
+            kept[at].absorb(&region);
+        } else {
+            // A uniform disc of radius r has the variance r² / 4 along each axis; that of the pixel is left out, so
+            // that the disc of a single one is a point.
+            let reach = radius + 2.0 * region.variance().sqrt();
+            cells.insert(kept.len(), region.mean, reach);
+            discs.push((region.mean, reach));
+            kept.push(region);
+        }
+    }
+    kept
+}
+
+/// Which discs reach into which square cell of the plane.
+struct Cells {
+    side: f64,
+    discs: HashMap<I64Vec2, Vec<usize>>,
+}
+
+impl Cells {
+    fn new(side: f64) -> Self {
+        Self { side, discs: HashMap::new() }
+    }
+
+    fn cell(&self, at: DVec2) -> I64Vec2 {
+        (at / self.side).floor().as_i64vec2()
+    }
+
+    /// Discs that may hold `at`.
+    fn at(&self, at: DVec2) -> &[usize] {
+        self.discs.get(&self.cell(at)).map_or(&[], Vec::as_slice)
+    }
+
+    fn insert(&mut self, disc: usize, center: DVec2, radius: f64) {
+        let (low, high) = (self.cell(center - radius), self.cell(center + radius));
+        for y in low.y..=high.y {
+            for x in low.x..=high.x {
+                self.discs.entry(I64Vec2::new(x, y)).or_default().push(disc);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

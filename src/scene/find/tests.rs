@@ -1,0 +1,206 @@
+use super::*;
+use crate::frame::Window;
+
+const REC709: [f64; 3] = [0.2126, 0.7152, 0.0722];
+const BLACK: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
+
+fn given(threshold: f64) -> FindOptions {
+    FindOptions { threshold: Some(threshold), merge: 0.0, ..FindOptions::default() }
+}
+
+/// A black picture with these pixels.
+fn picture(width: u32, height: u32, lights: &[(u32, u32, [f32; 3])]) -> (Vec<[f32; 4]>, Frame) {
+    let mut pixels = vec![BLACK; (width * height) as usize];
+    for &(i, j, [r, g, b]) in lights {
+        pixels[(j * width + i) as usize] = [r, g, b, 1.0];
+    }
+    (pixels, Frame::full(width, height))
+}
+
+/// A scene given by a function of the plane: a field under a bright sky, with a sun that has an aureole, two lamps and a
+/// window. Each pixel is the mean of some samples.
+fn landscape(width: u32, height: u32) -> (Vec<[f32; 4]>, Frame) {
+    let disc = |x: f64, y: f64, at: (f64, f64), r: f64| (x - at.0).hypot(y - at.1) < r;
+    let radiance = |x: f64, y: f64| {
+        let sun = if disc(x, y, (0.7, 0.5), 0.03) { 8000.0 } else { 0.0 };
+        let off = ((x - 0.7).powi(2) + (y - 0.5).powi(2)) / (2.0 * 0.05 * 0.05);
+        let aureole = if off < 30.0 { 40.0 * (-off).exp() } else { 0.0 };
+        let lamps = if disc(x, y, (-1.0, -0.3), 0.02) || disc(x, y, (-0.8, -0.3), 0.015) { 900.0 } else { 0.0 };
+        let window = if (x + 0.2).abs() < 0.12 && (y + 0.6).abs() < 0.05 { 300.0 } else { 0.0 };
+        0.2 + if y > 0.0 { 2.0 + y } else { 0.1 * (x - x.round()) } + sun + aureole + lamps + window
+    };
+    let frame = Frame::full(width, height);
+    let n = if width > 2000 { 2 } else { 4 };
+    let offset = |s: u32| (f64::from(s) + 0.5) / f64::from(n) - 0.5;
+    let samples: Vec<_> = (0..n * n).map(|s| (offset(s % n), offset(s / n))).collect();
+    let pixel = |i: u32, j: u32| {
+        let sample = |&(di, dj): &(f64, f64)| radiance(frame.x(f64::from(i) + di), frame.y(f64::from(j) + dj));
+        let l = (samples.iter().map(sample).sum::<f64>() / samples.len() as f64) as f32;
+        [l, 0.9 * l, 0.7 * l, 1.0]
+    };
+    ((0..width * height).map(|p| pixel(p % width, p / width)).collect(), frame)
+}
+
+#[test]
+fn a_light_top_right_is_at_positive_x_and_y() {
+    let (pixels, frame) = picture(8, 4, &[(6, 0, [3.0, 2.0, 1.0])]);
+    let found = find(&pixels, &frame, REC709, &given(0.5));
+    assert_eq!((found.regions, found.dropped, found.rule), (1, 0, Rule::Given));
+    let light = found.lights[0];
+    assert_eq!(light.position, DVec2::new(1.25, 0.75));
+    assert_eq!(light.flux, [0.75, 0.5, 0.25]);
+    assert!((light.size - 0.5 / 12_f64.sqrt()).abs() < 1e-15);
+}
+
+#[test]
+fn a_square_has_the_size_of_its_uniform_density() {
+    let square: Vec<_> = (0..100).map(|p| (20 + p % 10, 30 + p / 10, [2.0; 3])).collect();
+    let (pixels, frame) = picture(64, 64, &square);
+    let light = find(&pixels, &frame, REC709, &given(1.0)).lights[0];
+    let side = 10.0 * frame.pixel_size();
+    assert!((light.size - side / 12_f64.sqrt()).abs() < 1e-12, "{}", light.size);
+    assert!((light.flux[0] - 2.0 * side * side).abs() < 1e-12);
+    assert!((light.position - frame.position(24.5, 34.5)).length() < 1e-12);
+}
+
+#[test]
+fn the_window_moves_the_pixels_and_not_the_picture() {
+    let (pixels, _) = picture(3, 2, &[(1, 1, [1.0; 3])]);
+    for (x, y) in [(10, 20), (-5, -7), (5000, 3)] {
+        let frame = Frame::full(100, 50).with_window(Window { x, y, width: 3, height: 2 });
+        let light = find(&pixels, &frame, REC709, &given(0.5)).lights[0];
+        assert!((light.position - frame.position(f64::from(x) + 1.0, f64::from(y) + 1.0)).length() < 1e-12);
+        assert_eq!(light.flux, [0.04 * 0.04; 3]);
+    }
+}
+
+#[test]
+fn close_regions_merge_by_the_parallel_axis_theorem() {
+    let (pixels, frame) = picture(100, 100, &[(50, 50, [3.0; 3]), (54, 50, [1.0; 3]), (90, 50, [2.0; 3])]);
+    let merged = find(&pixels, &frame, REC709, &FindOptions { merge: 0.08, ..given(0.5) });
+    assert_eq!((merged.regions, merged.merged(), merged.lights.len()), (3, 1, 2));
+    let light = merged.lights[0];
+    assert!((light.position - frame.position(51.0, 50.0)).length() < 1e-12);
+    assert!((light.flux[1] - 4.0 * 0.02 * 0.02).abs() < 1e-15);
+    // Variance along x is 3, along y 0; half their sum, and the twelfth of a pixel.
+    assert!((light.size - 0.02 * (1.5 + 1.0 / 12.0_f64).sqrt()).abs() < 1e-12);
+    assert_eq!(find(&pixels, &frame, REC709, &FindOptions { merge: 0.079, ..given(0.5) }).lights.len(), 3);
+}
+
+#[test]
+fn a_string_of_lamps_does_not_collapse_into_one() {
+    let lamps: Vec<_> = (0..40).map(|k| (2 + 4 * k, 5, [1.0; 3])).collect();
+    let (pixels, frame) = picture(200, 100, &lamps);
+    let found = find(&pixels, &frame, REC709, &FindOptions { merge: 0.1, ..given(0.5) });
+    // The left-most of equal ones is kept first and takes the next, 0.08 away, so every second one stays.
+    assert_eq!(found.lights.len(), 20);
+}
+
+#[test]
+fn the_cap_keeps_the_brightest_and_says_what_it_drops() {
+    let lights: Vec<_> = (0..10).map(|k| (10 * k, 3, [k as f32 + 1.0; 3])).collect();
+    let (pixels, frame) = picture(100, 10, &lights);
+    let found = find(&pixels, &frame, REC709, &FindOptions { max_lights: 3, ..given(0.5) });
+    assert_eq!((found.lights.len(), found.regions, found.dropped, found.merged()), (3, 10, 7, 0));
+    assert!((found.dropped_share - 28.0 / 55.0).abs() < 1e-6);
+    assert!((found.shares[0] - 10.0 / 55.0).abs() < 1e-6);
+    assert!(found.lights.is_sorted_by(|a, b| a.flux[1] >= b.flux[1]));
+}
+
+#[test]
+fn equal_lights_come_from_the_top_and_then_from_the_left() {
+    let (pixels, frame) = picture(9, 9, &[(7, 1, [1.0; 3]), (1, 7, [1.0; 3]), (1, 1, [1.0; 3])]);
+    let found = find(&pixels, &frame, REC709, &given(0.5));
+    let at: Vec<_> = found.lights.iter().map(|light| frame.pixel(light.position).round().as_i64vec2()).collect();
+    assert_eq!(at, [I64Vec2::new(1, 1), I64Vec2::new(7, 1), I64Vec2::new(1, 7)]);
+}
+
+#[test]
+fn what_is_not_finite_is_no_light_and_negatives_count_as_0() {
+    let bad = [(0, 0, [f32::NAN, 9.0, 9.0]), (3, 0, [9.0, f32::INFINITY, 9.0]), (6, 0, [9.0, 9.0, f32::NEG_INFINITY])];
+    let (mut pixels, frame) = picture(9, 3, &bad);
+    assert_eq!(find(&pixels, &frame, REC709, &given(0.5)).lights, []);
+    pixels[9 + 4] = [2.0, 4.0, -8.0, 0.0];
+    let found = find(&pixels, &frame, REC709, &FindOptions::default());
+    let area = frame.pixel_size().powi(2);
+    assert_eq!((found.lights.len(), found.lights[0].flux), (1, [2.0 * area, 4.0 * area, 0.0]));
+}
+
+#[test]
+fn pictures_without_light_have_none() {
+    for level in [0.0, 0.18, 1.0, 5e4] {
+        let (frame, pixels) = (Frame::full(16, 9), vec![[level, level, level, 1.0]; 144]);
+        let found = find(&pixels, &frame, REC709, &FindOptions::default());
+        assert_eq!((found.lights.len(), found.regions, found.dropped_share), (0, 0, 0.0));
+        assert!(found.threshold >= f64::from(level));
+    }
+    let one = find(&[[3.0; 4]], &Frame::full(1, 1), REC709, &given(0.0));
+    assert_eq!((one.lights[0].position, one.lights[0].flux), (DVec2::ZERO, [12.0; 3]));
+    assert_eq!(find(&[BLACK], &Frame::full(1, 1), REC709, &given(0.0)).lights, []);
+    let empty = Frame::full(8, 8).with_window(Window { x: 0, y: 0, width: 0, height: 0 });
+    assert_eq!(find(&[], &empty, REC709, &FindOptions::default()).lights, []);
+}
+
+#[test]
+fn a_hot_pixel_in_a_flat_picture_is_a_light() {
+    let mut pixels = vec![[0.3, 0.3, 0.3, 1.0]; 10_000];
+    pixels[5050] = [1e4, 1e4, 1e4, 1.0];
+    let found = find(&pixels, &Frame::full(100, 100), REC709, &FindOptions::default());
+    assert_eq!((found.lights.len(), found.rule), (1, Rule::Split));
+}
+
+#[test]
+fn the_same_scene_has_the_same_lights_at_any_resolution() {
+    let of = |width, height| {
+        let (pixels, frame) = landscape(width, height);
+        find(&pixels, &frame, REC709, &FindOptions::default())
+    };
+    let expected = of(1920, 1080);
+    assert_eq!(expected.lights.len(), 4, "the sun, the window and two lamps: {expected:?}");
+    let places = [(0.7, 0.5), (-0.2, -0.6), (-1.0, -0.3), (-0.8, -0.3)];
+    for (light, (x, y)) in expected.lights.iter().zip(places) {
+        assert!((light.position - DVec2::new(x, y)).length() < 0.002, "{light:?} is not at {x}, {y}");
+    }
+    for (width, height) in [(480, 270), (960, 540), (3840, 2160)] {
+        let found = of(width, height);
+        assert!(
+            (found.threshold / expected.threshold).log2().abs() < 0.5,
+            "{} {}",
+            found.threshold,
+            expected.threshold
+        );
+        assert_eq!(found.lights.len(), 4);
+        for (light, expected) in found.lights.iter().zip(&expected.lights) {
+            assert!((light.position - expected.position).length() < 0.003, "{light:?} {expected:?}");
+            assert!((light.flux[1] / expected.flux[1] - 1.0).abs() < 0.03, "{light:?} {expected:?}");
+            assert!((light.size - expected.size).abs() < 0.1 * 2.0 / f64::from(height), "{light:?} {expected:?}");
+        }
+    }
+}
+
+#[test]
+fn the_result_does_not_depend_on_the_threads() {
+    let (pixels, frame) = landscape(641, 479);
+    let with = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| find(&pixels, &frame, REC709, &FindOptions { threshold: Some(1.9), ..Default::default() }))
+    };
+    assert!(!with(1).lights.is_empty());
+    assert_eq!(with(1), with(7));
+}
+
+#[test]
+fn a_hundred_thousand_regions_merge_in_a_moment() {
+    let lights: Vec<_> = (0..100_000).map(|k| (2 * (k % 500), 2 * (k / 500), [1.0 + (k % 97) as f32; 3])).collect();
+    let (pixels, frame) = picture(1000, 400, &lights);
+    let start = std::time::Instant::now();
+    let found = find(&pixels, &frame, REC709, &given(0.5));
+    assert_eq!((found.regions, found.dropped), (100_000, 100_000 - 64));
+    let merged = find(&pixels, &frame, REC709, &FindOptions { merge: 0.02, max_lights: usize::MAX, ..given(0.5) });
+    assert_eq!(merged.merged() + merged.lights.len(), 100_000);
+    let (all, kept) = (lights.iter().map(|l| f64::from(l.2[0])).sum::<f64>(), frame.pixel_size().powi(2));
+    let flux: f64 = merged.lights.iter().map(|light| light.flux[0]).sum();
+    assert!((flux / (all * kept) - 1.0).abs() < 1e-9, "merging keeps the flux");
+    // Quadratic time would take minutes.
+    assert!(start.elapsed().as_secs_f64() < 5.0);
+}

@@ -1,0 +1,3 @@
+//! vglare's promises, one module each.
+
+mod scene;
