@@ -32,7 +32,12 @@ impl Profile {
         let light = linear_rec709();
         // Relative colorimetric: white to white, and every colour that the target has stays as it is.
         let intent = RenderingIntent::RelativeColorimetric;
-        let options = TransformOptions { rendering_intent: intent, ..TransformOptions::default() };
+        let options = TransformOptions {
+            rendering_intent: intent,
+            // Without this, colours outside Rec.709 are clipped.
+            allow_extended_range_rgb_xyz: true,
+            ..TransformOptions::default()
+        };
         let way = match profile.color_space {
             DataColorSpace::Rgb if is_linear(&profile) => Way::Matrix(matrix(&profile, &light)),
             DataColorSpace::Rgb => {
@@ -117,8 +122,11 @@ mod tests {
 
     #[test]
     fn srgb_is_srgb_and_a_linear_profile_has_no_ceiling() {
-        let want = Curve::Srgb.light(0.5) as f32;
-        close(light_of(&ColorProfile::new_srgb(), [0.5; 3]), [want; 3], 1e-4);
+        for code in 0..=255 {
+            let encoded = code as f32 / 255.0;
+            let want = Curve::Srgb.light(f64::from(encoded)) as f32;
+            close(light_of(&ColorProfile::new_srgb(), [encoded; 3]), [want; 3], 3e-4 * want + 1e-9);
+        }
         close(light_of(&linear_rec709(), [0.25, 12.5, -3.0]), [0.25, 12.5, -3.0], 1e-3);
     }
 

@@ -43,8 +43,7 @@ pub(super) fn write(writer: impl Write, photo: &Photo) -> Result<(), Reason> {
 
 /// The nearest colour that the format can hold.
 fn held(rgb: [f32; 3]) -> [f32; 3] {
-    // `max` takes 0 for NaN.
-    let rgb = rgb.map(|c| c.max(0.0).min(LARGEST));
+    let rgb = rgb.map(|c| if c.is_nan() { 0.0 } else { c.clamp(0.0, LARGEST) });
     if rgb.iter().all(|&c| c < SMALLEST) { [0.0; 3] } else { rgb }
 }
 

@@ -72,14 +72,13 @@ pub(super) fn check_size(width: u32, height: u32) -> std::result::Result<usize, 
     }
 }
 
-/// The reason in words; all decoders mean the same by an early end.
+/// The reason in words. All decoders mean the same by an early end, and wrap it each in its own way.
 fn explain(reason: &(dyn std::error::Error + 'static)) -> String {
-    let mut cause = Some(reason);
-    while let Some(error) = cause {
-        if error.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::UnexpectedEof) {
-            return "the file is cut short".into();
-        }
-        cause = error.source();
+    let text = reason.to_string();
+    let early = io::Error::from(io::ErrorKind::UnexpectedEof).to_string();
+    // The words of `Read::read_exact`.
+    if text.contains("failed to fill whole buffer") || text.contains(&early) {
+        return "the file is cut short".into();
     }
-    reason.to_string()
+    text
 }
