@@ -123,6 +123,15 @@ impl Photo {
         Self { frame, pixels, source: Source::plain() }
     }
 
+    /// Another picture in the same frame and with the same source: what a file of it would keep beside the pixels.
+    ///
+    /// # Panics
+    /// If there are not as many pixels as the window holds.
+    pub fn with_pixels(&self, pixels: Vec<[f32; 4]>) -> Self {
+        assert_eq!(pixels.len(), self.frame.window.pixels(), "a photo needs as many pixels as its window");
+        Self { frame: self.frame, pixels, source: self.source.clone() }
+    }
+
     /// Columns of the picture.
     pub fn width(&self) -> u32 {
         self.frame.width

@@ -98,6 +98,8 @@ pub(super) fn write<T: Code>(writer: impl Write, photo: &Photo, look: Look) -> R
     let mut encoder = png::Encoder::new(writer, photo.width(), photo.height());
     encoder.set_color(colours[channels - 1]);
     encoder.set_depth(if size_of::<T>() == 2 { BitDepth::Sixteen } else { BitDepth::Eight });
+    // A quarter of the default's time for half as much again of its size.
+    encoder.set_compression(png::Compression::Fast);
     encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
     let mut writer = encoder.write_header()?;
     if size_of::<T>() == 2 {

@@ -34,6 +34,8 @@ pub(super) fn read(reader: impl BufRead + Seek) -> Result<Photo, Reason> {
     let orientation = decoder.find_tag_unsigned::<u8>(Tag::Orientation).ok().flatten();
     let profile = icc.map(|icc| Profile::new(&icc, channels < 3)).transpose()?.flatten();
     let mut samples = DecodingResult::U8(Vec::new());
+    // The decoder aborts where memory is short; ask for it first.
+    drop(zeroed::<u8>(decoder.image_buffer_layout()?.complete_len)?);
     let layout = decoder.read_image_to_buffer(&mut samples)?;
     let picture = Picture {
         size: (width, height),

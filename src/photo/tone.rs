@@ -11,7 +11,8 @@ use glam::{Mat3A, Vec3A};
 pub enum ToneMap {
     /// Clip at 0 and 1.
     None,
-    /// L / (1 + L) on the luminance: [REINHARD] eq. 3. Keeps hues, flattens contrast.
+    /// v / (1 + v), [REINHARD] eq. 3, on each colour: on luminance alone, as in the paper, a sun stays orange and
+    /// ends up darker than the sky around it. Flattens contrast.
     Reinhard,
     /// The film-like curve of ACES: [HILL]. Contrasty; strong colours burn to white.
     Aces,
@@ -39,8 +40,8 @@ impl ToneMap {
 }
 
 fn reinhard(light: Vec3A) -> Vec3A {
-    let luminance = light.dot(Vec3A::new(0.2126, 0.7152, 0.0722)).max(0.0);
-    light / (1.0 + luminance)
+    let light = light.max(Vec3A::ZERO);
+    light / (1.0 + light)
 }
 
 fn aces(light: Vec3A) -> Vec3A {

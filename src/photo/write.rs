@@ -114,7 +114,7 @@ fn check_picture(photo: &Photo, format: Format) -> Result<(), Reason> {
     if photo.pixels.len() != photo.frame.window.pixels() {
         return Err("the photo has not as many pixels as its window".into());
     }
-    if width == 0 || height == 0 {
+    if width == 0 || height == 0 || photo.pixels.is_empty() {
         return Err(format!("the picture has no pixels: {width} × {height}").into());
     }
     let longest = jpeg::LONGEST_SIDE;

@@ -24,6 +24,9 @@ use crate::frame::{Frame, Window};
 /// Blocks that are decompressed together: enough to keep every thread busy, few enough to stay small.
 const BLOCKS_A_THREAD: usize = 4;
 
+/// Bytes that a block may claim to have: decompression takes the memory before it looks.
+const LARGEST_BLOCK: usize = 1 << 32;
+
 pub fn read(reader: impl BufRead + Seek) -> Result<Photo, Reason> {
     let reader = block::read(reader, false).map_err(explain)?;
     let layer = choose(reader.headers())?;
@@ -100,6 +103,9 @@ impl<'h> Picture<'h> {
     fn new(layer: &'h Layer, header: &'h Header) -> Result<Self, Reason> {
         if let Some(channel) = header.channels.list.iter().find(|c| c.sampling != Vec2(1, 1)) {
             return Err(format!("the channel {} is subsampled, which vglare does not read", channel.name).into());
+        }
+        if header.max_block_byte_size() > LARGEST_BLOCK {
+            return Err("its blocks are too large to be true".into());
         }
         let Vec2(width, height) = header.layer_size;
         let count = check_size(u32::try_from(width)?, u32::try_from(height)?)?;

@@ -17,7 +17,7 @@ use exr::meta::attribute::{
 use exr::meta::header::Header;
 use exr::meta::{BlockDescription, Headers};
 use vglare::frame::{Frame, Window};
-use vglare::photo::{self, Alpha, Depth, WriteOptions};
+use vglare::photo::{self, Alpha, Depth, ToneMap, WriteOptions};
 
 use super::{Folder, bits};
 
@@ -157,27 +157,17 @@ fn the_largest_level_is_the_picture() {
     want.retain(|at, _| at[1] == 0);
     let (headers, got) = content(&to);
     assert!(got == want);
-    assert_eq!(headers[0].blocks, TileDescription { rounding_mode: RoundingMode::Up, ..tiles() }.into_blocks());
+    let BlockDescription::Tiles(tiles) = headers[0].blocks else { panic!("no tiles") };
+    assert_eq!((tiles.tile_size, tiles.level_mode), (Vec2(16, 8), LevelMode::Singular));
 }
 
-fn tiles() -> TileDescription {
-    TileDescription { tile_size: Vec2(16, 8), level_mode: LevelMode::Singular, rounding_mode: RoundingMode::Down }
-}
-
-trait IntoBlocks {
-    fn into_blocks(self) -> BlockDescription;
-}
-
-impl IntoBlocks for TileDescription {
-    fn into_blocks(self) -> BlockDescription {
-        BlockDescription::Tiles(self)
-    }
-}
+const LOSSY: [Compression; 4] =
+    [Compression::B44, Compression::B44A, Compression::PXR24, Compression::DWAA(Some(45.0))];
 
 #[test]
 fn a_lossy_picture_loses_no_more() {
     let folder = Folder::new();
-    for compression in [Compression::B44, Compression::B44A, Compression::PXR24] {
+    for compression in LOSSY {
         let path = folder.path("lossy.exr");
         put(&path, vec![header(&ALL, compression, BlockDescription::ScanLines)]);
         let photo = photo::read(&path).unwrap();
@@ -191,12 +181,7 @@ fn windows_and_attributes_are_told() {
     let folder = Folder::new();
     let path = folder.path("a.exr");
     let mut header = header(&ALL, Compression::ZIP16, BlockDescription::ScanLines);
-    header.shared_attributes.chromaticities = Some(Chromaticities {
-        red: Vec2(0.713, 0.293),
-        green: Vec2(0.165, 0.83),
-        blue: Vec2(0.128, 0.044),
-        white: Vec2(0.32168, 0.33767),
-    });
+    header.shared_attributes.chromaticities = Some(ACESCG);
     put(&path, vec![header]);
     let photo = photo::read(&path).unwrap();
     let window = Window { x: -3, y: 5, width: 37, height: 21 };
@@ -206,6 +191,82 @@ fn windows_and_attributes_are_told() {
     assert!((weights[0] - 0.2722).abs() < 1e-3 && (weights.iter().sum::<f64>() - 1.0).abs() < 1e-9, "{weights:?}");
     assert_eq!((photo.format_name(), photo.depth_name()), ("OpenEXR", "float"));
 }
+
+/// ACES AP1 with the white of ACES.
+const ACESCG: Chromaticities = Chromaticities {
+    red: Vec2(0.713, 0.293),
+    green: Vec2(0.165, 0.83),
+    blue: Vec2(0.128, 0.044),
+    white: Vec2(0.32168, 0.33767),
+};
+
+#[test]
+fn other_formats_get_rec709() {
+    let folder = Folder::new();
+    let path = folder.path("a.exr");
+    let channels = [("B", SampleType::F32), ("G", SampleType::F32), ("R", SampleType::F32)];
+    let mut header = header(&channels, Compression::ZIP16, BlockDescription::ScanLines);
+    header.shared_attributes.chromaticities = Some(ACESCG);
+    header.shared_attributes.display_window = IntegerBounds::new((7, 25), (37, 21));
+    put(&path, vec![header]);
+    let mut photo = photo::read(&path).unwrap();
+    photo.pixels.fill([0.5, 0.5, 0.5, 1.0]);
+    photo.pixels[0] = [0.5, 0.1, 0.2, 1.0];
+    // Published ACEScg to Rec.709.
+    let want = [0.7737, 0.0468, 0.2057, 1.0];
+    for (name, tolerance) in [("a.pfm", 1e-3), ("a.tif", 1e-3), ("a.hdr", 6e-3), ("a.png", 1e-2)] {
+        let tone_map = name.ends_with("png").then_some(ToneMap::None);
+        let got = folder.round_trip_as(name, &photo, WriteOptions { tone_map, ..Default::default() });
+        let near = |got: [f32; 4], want: [f32; 4]| got.iter().zip(want).all(|(g, w)| (g - w).abs() < tolerance);
+        assert!(near(got.pixels[0], want) && near(got.pixels[9], [0.5, 0.5, 0.5, 1.0]), "{name}: {:?}", got.pixels[0]);
+        assert!(got.source.primaries.is_none());
+    }
+    let kept = folder.round_trip("b.exr", &photo);
+    assert_eq!((kept.pixels[0], kept.source.primaries), (photo.pixels[0], photo.source.primaries));
+}
+
+#[test]
+fn integer_colours_stay_integers() {
+    let folder = Folder::new();
+    let (from, to) = (folder.path("from.exr"), folder.path("to.exr"));
+    let channels = [("B", SampleType::U32), ("G", SampleType::U32), ("R", SampleType::U32)];
+    put(&from, vec![header(&channels, Compression::ZIP16, BlockDescription::ScanLines)]);
+    let photo = photo::read(&from).unwrap();
+    assert_eq!(photo.source.depth, Depth::Uint);
+    photo::write(&to, &photo, &WriteOptions::default()).unwrap();
+    assert!(content(&from) == content(&to));
+    let half =
+        folder.round_trip_as("half.exr", &photo, WriteOptions { depth: Some(Depth::Half), ..Default::default() });
+    assert!(half.pixels.iter().flatten().all(|c| c.is_finite()), "beyond half's range is its largest value");
+}
+
+#[test]
+fn damage_under_any_compression_is_no_panic() {
+    let folder = Folder::new();
+    let lossless =
+        [Compression::Uncompressed, Compression::RLE, Compression::ZIP1, Compression::ZIP16, Compression::PIZ];
+    let mut state = 1_u64;
+    for compression in lossless.into_iter().chain(LOSSY) {
+        for blocks in [BlockDescription::ScanLines, with_levels()] {
+            let path = folder.path("whole.exr");
+            put(&path, vec![header(&ALL, compression, blocks)]);
+            let whole = std::fs::read(&path).unwrap();
+            for round in 0..ROUNDS {
+                let mut bytes = whole.clone();
+                for _ in 0..=round % 4 {
+                    state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                    let at = (state >> 33) as usize % bytes.len();
+                    bytes[at] ^= 1 << (state >> 20 & 7);
+                }
+                if let Err(error) = photo::read(&folder.put("damaged.exr", &bytes)) {
+                    assert!(error.to_string().contains("damaged.exr"), "{error}");
+                }
+            }
+        }
+    }
+}
+
+const ROUNDS: usize = 20;
 
 #[test]
 fn luminance_that_gets_a_colour_becomes_three_channels() {
