@@ -144,7 +144,8 @@ fn look(format: Format, depth: Depth, photo: &Photo, options: &WriteOptions) -> 
     if !options.exposure.is_finite() {
         return Err(format!("an exposure of {} stops makes no picture", options.exposure).into());
     }
-    if !depth.is_display() && (options.exposure != 0.0 || options.tone_map.is_some()) {
+    let asks = options.exposure != 0.0 || options.tone_map.is_some_and(|map| map != ToneMap::None);
+    if asks && !depth.is_display() {
         let (format, depth) = (format.name(), depth.name());
         return Err(format!("{depth} {format} holds scene-linear light, which gets no exposure and no tone map").into());
     }

@@ -4,6 +4,7 @@ mod damaged;
 mod display;
 mod exr;
 mod target;
+mod tiff;
 
 use std::path::{Path, PathBuf};
 

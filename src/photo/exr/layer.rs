@@ -43,7 +43,11 @@ pub(super) fn choose(headers: &[Header]) -> Result<Layer, Reason> {
         Some(best) => Ok(best.layer),
         None => {
             let names = headers.iter().flat_map(|h| &h.channels.list).map(|c| c.name.to_string());
-            Err(format!("no layer has R, G, B or Y; there are {}", names.collect::<Vec<_>>().join(", ")).into())
+            let names: Vec<String> = names.collect();
+            if names.iter().any(|name| matches!(split(name).1, "RY" | "BY")) {
+                return Err("it holds luminance and chroma (Y, RY, BY), which vglare does not read".into());
+            }
+            Err(format!("no layer has R, G, B or Y; there are {}", names.join(", ")).into())
         }
     }
 }

@@ -146,7 +146,8 @@ impl<'h> Picture<'h> {
     }
 }
 
-fn frame(header: &Header) -> Result<Frame, Reason> {
+/// The picture and the window that a header describes.
+pub(super) fn frame(header: &Header) -> Result<Frame, Reason> {
     let display = header.shared_attributes.display_window;
     let offset = header.own_attributes.layer_position;
     let (width, height) = (u32::try_from(display.size.width())?, u32::try_from(display.size.height())?);

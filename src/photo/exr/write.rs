@@ -16,7 +16,7 @@ use super::super::{Alpha, Depth, Photo, Reason, display};
 use super::Rest;
 use super::layer::Role;
 use super::lines::Scratch;
-use super::read::explain;
+use super::read::{explain, frame};
 
 /// Blocks that are compressed together.
 const BLOCKS_A_THREAD: usize = 4;
@@ -65,10 +65,9 @@ pub fn write(writer: impl Write + Seek, photo: &Photo, depth: Depth) -> Result<(
     .map_err(explain)
 }
 
-/// The pixels must be those of the window that the header describes.
+/// The picture and its window must be those that the header describes.
 fn check_window(photo: &Photo, header: &Header) -> Result<(), Reason> {
-    let window = photo.frame.window;
-    if header.layer_size != Vec2(window.width as usize, window.height as usize) {
+    if frame(header)? != photo.frame {
         return Err("the photo's window is not that of the file it came from".into());
     }
     Ok(())

@@ -121,6 +121,20 @@ fn an_icc_profile_is_honoured() {
 }
 
 #[test]
+fn a_palette_with_transparency_is_colours_with_alpha() {
+    let folder = Folder::new();
+    let mut encoder = png::Encoder::new(File::create(folder.path("a.png")).unwrap(), 2, 1);
+    encoder.set_color(png::ColorType::Indexed);
+    encoder.set_depth(png::BitDepth::One);
+    encoder.set_palette(vec![255, 0, 0, 0, 0, 255]);
+    encoder.set_trns(vec![255, 51]);
+    encoder.write_header().unwrap().write_image_data(&[0b0100_0000]).unwrap();
+    let photo = photo::read(&folder.path("a.png")).unwrap();
+    assert_eq!(photo.pixels, [[1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.2]]);
+    assert_eq!((photo.source.alpha, photo.source.depth), (Alpha::Straight, Depth::Eight));
+}
+
+#[test]
 fn png_gamma_is_honoured() {
     let folder = Folder::new();
     let put = |name: &str, gamma: u32| {

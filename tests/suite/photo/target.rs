@@ -35,6 +35,8 @@ fn what_a_format_cannot_hold_is_refused() {
         let text = refusal(&folder.path(name), options);
         assert!(text.contains(why), "{name}: {text}");
     }
+    let none = WriteOptions { tone_map: Some(ToneMap::None), ..Default::default() };
+    photo::check_target(&folder.path("a.exr"), &asymmetric(3, 2), &none).unwrap();
     fs::create_dir(folder.path("folder.exr")).unwrap();
     assert!(refusal(&folder.path("folder.exr"), WriteOptions::default()).contains("folder"));
     assert_eq!(fs::read_dir(folder.path(".")).unwrap().count(), 1, "nothing is left behind");
