@@ -1,6 +1,6 @@
 //! Pictures in and out: linear light, RGBA f32.
 //!
-//! [`read`] takes OpenEXR, Radiance HDR, PFM, TIFF, PNG and JPEG, told apart by their content; [`write`] writes the
+//! [`read`] takes OpenEXR, Radiance HDR, PFM, TIFF, PNG and JPEG, told apart by their content; [`write()`] writes the
 //! same six, told apart by the name's extension.
 //!
 //! # What the numbers mean

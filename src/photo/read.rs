@@ -30,7 +30,7 @@ pub fn read(path: &Path) -> Result<Photo> {
     }
 }
 
-fn decode(reader: Box<dyn Source>, format: Format) -> std::result::Result<Photo, Reason> {
+fn decode(reader: Box<dyn Input>, format: Format) -> std::result::Result<Photo, Reason> {
     match format {
         Format::OpenExr => exr::read(reader),
         Format::Radiance => radiance::read(reader),
@@ -41,10 +41,11 @@ fn decode(reader: Box<dyn Source>, format: Format) -> std::result::Result<Photo,
     }
 }
 
-trait Source: BufRead + Seek {}
-impl<T: BufRead + Seek> Source for T {}
+/// What decoders read from.
+trait Input: BufRead + Seek {}
+impl<T: BufRead + Seek> Input for T {}
 
-fn open(path: &Path) -> std::result::Result<Box<dyn Source>, Reason> {
+fn open(path: &Path) -> std::result::Result<Box<dyn Input>, Reason> {
     let mut file = File::open(path)?;
     let kind = file.metadata()?;
     if kind.is_dir() {

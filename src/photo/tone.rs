@@ -11,12 +11,12 @@ use glam::{Mat3A, Vec3A};
 pub enum ToneMap {
     /// Clip at 0 and 1.
     None,
-    /// v / (1 + v), [REINHARD] eq. 3, on each colour: on luminance alone, as in the paper, a sun stays orange and
+    /// v / (1 + v), \[REINHARD\] eq. 3, on each colour: on luminance alone, as in the paper, a sun stays orange and
     /// ends up darker than the sky around it. Flattens contrast.
     Reinhard,
-    /// The film-like curve of ACES: [HILL]. Contrasty; strong colours burn to white.
+    /// The film-like curve of ACES: \[HILL\]. Contrasty; strong colours burn to white.
     Aces,
-    /// A soft, wide curve that takes bright colours gently to white: [AGX].
+    /// A soft, wide curve that takes bright colours gently to white: \[AGX\].
     #[default]
     Agx,
 }
