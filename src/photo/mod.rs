@@ -1,12 +1,198 @@
 //! Pictures in and out: linear light, RGBA f32.
+//!
+//! [`read`] takes OpenEXR, Radiance HDR, PFM, TIFF, PNG and JPEG, told apart by their content; [`write()`] writes the
+//! same six, told apart by the name's extension.
+//!
+//! # What the numbers mean
+//!
+//! OpenEXR, Radiance HDR, PFM and float TIFF hold *scene-linear* light; their values are taken over untouched. Integer
+//! TIFF, PNG and JPEG are *display-referred*: an embedded ICC profile (PNG also: cICP, gAMA, cHRM) decodes them, and
+//! where there is none the sRGB curve. Their pixels come out in linear light of Rec.709 primaries, 1 is display white.
+//!
+//! # Alpha
+//!
+//! Alpha is carried as it is and written back bit for bit at the same depth. OpenEXR's is premultiplied; PNG's and
+//! TIFF's (unless it says otherwise) straight. Straight colours are premultiplied when they go into an OpenEXR file;
+//! premultiplied colours are never divided: PNG, which knows straight alpha only, gets them as they stand, opaque.
+//! JPEG, HDR and PFM hold no alpha.
+//!
+//! # Negative, infinite and undefined pixels
+//!
+//! Finite negative values are legitimate (wide gamuts, filters that ring) and kept. NaN and infinities are kept as
+//! they are, payload included, in formats that can hold them (OpenEXR, PFM, float TIFF), and never count as light.
+//! Display formats and Radiance HDR write NaN, −∞ and negative values as 0, and +∞ as the largest value they hold.
+
+mod bad;
+mod decode;
+mod display;
+mod exr;
+mod format;
+mod icc;
+mod jpeg;
+mod pfm;
+mod png;
+mod primaries;
+mod radiance;
+mod read;
+mod tiff;
+mod tone;
+mod transfer;
+mod write;
+
+use std::sync::Arc;
+
+use glam::DMat3;
+
+pub use bad::{BadKind, BadPixels, survey};
+pub use format::{Depth, Format};
+pub use primaries::Primaries;
+pub use read::{MAX_PIXELS, read};
+pub use tone::ToneMap;
+pub use write::{WriteOptions, check_target, write};
 
 use crate::frame::Frame;
+
+/// Why a decoder or encoder gave up; [`read`] and [`write()`] add the file's name.
+type Reason = Box<dyn std::error::Error + Send + Sync>;
 
 /// A picture in linear light.
 #[derive(Debug, Clone)]
 pub struct Photo {
     /// The picture and the window of it that `pixels` holds.
     pub frame: Frame,
-    /// RGBA, row by row from the top, `frame.window.width` × `frame.window.height` of them.
+    /// RGBA, row by row from the top, `frame.window.width` × `frame.window.height` of them; alpha is 1 where the file
+    /// has none.
     pub pixels: Vec<[f32; 4]>,
+    /// What its file said about itself.
+    pub source: Source,
+}
+
+/// How alpha relates to colour.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Alpha {
+    /// There is none: opaque.
+    None,
+    /// Colour is not multiplied by alpha (PNG, most TIFF).
+    Straight,
+    /// Colour is multiplied by alpha (OpenEXR).
+    Premultiplied,
+}
+
+/// What a photo's file said about itself; all that is needed to write the photo back.
+#[derive(Debug, Clone)]
+pub struct Source {
+    /// The file's format; none for a picture that comes from no file.
+    pub format: Option<Format>,
+    /// How a colour sample was stored.
+    pub depth: Depth,
+    /// Whether there was an alpha channel, and which kind.
+    pub alpha: Alpha,
+    /// Whether there was a single channel of luminance instead of three colours.
+    pub grey: bool,
+    /// Whether the values were meant for a display (PNG, JPEG, integer TIFF) and not scene-linear light.
+    pub display_referred: bool,
+    /// The colours of (1,0,0), (0,1,0), (0,0,1) and (1,1,1), where they are not Rec.709's (OpenEXR only).
+    pub primaries: Option<Primaries>,
+    /// Everything else that an OpenEXR file held.
+    exr: Option<Arc<exr::Rest>>,
+}
+
+impl Source {
+    /// Scene-linear RGB without alpha, from no file.
+    fn plain() -> Self {
+        Self {
+            format: None,
+            depth: Depth::Float,
+            alpha: Alpha::None,
+            grey: false,
+            display_referred: false,
+            primaries: None,
+            exr: None,
+        }
+    }
+}
+
+impl Photo {
+    /// A scene-linear picture of Rec.709 primaries without alpha, all pixels stored, row by row from the top.
+    ///
+    /// # Panics
+    /// If there are not `width` × `height` pixels.
+    pub fn new(width: u32, height: u32, pixels: Vec<[f32; 4]>) -> Self {
+        let frame = Frame::full(width, height);
+        assert_eq!(pixels.len(), frame.window.pixels(), "a photo needs as many pixels as its window");
+        Self { frame, pixels, source: Source::plain() }
+    }
+
+    /// Another picture in the same frame and with the same source: what a file of it would keep beside the pixels.
+    ///
+    /// # Panics
+    /// If there are not as many pixels as the window holds.
+    pub fn with_pixels(&self, pixels: Vec<[f32; 4]>) -> Self {
+        assert_eq!(pixels.len(), self.frame.window.pixels(), "a photo needs as many pixels as its window");
+        Self { frame: self.frame, pixels, source: self.source.clone() }
+    }
+
+    /// Columns of the picture.
+    pub fn width(&self) -> u32 {
+        self.frame.width
+    }
+
+    /// Rows of the picture.
+    pub fn height(&self) -> u32 {
+        self.frame.height
+    }
+
+    /// The name of the format that the photo was read from.
+    pub fn format_name(&self) -> &'static str {
+        self.source.format.map_or("none", Format::name)
+    }
+
+    /// How a colour sample was stored in the file, in words.
+    pub fn depth_name(&self) -> &'static str {
+        match self.source.format {
+            Some(Format::Radiance) => "RGBE, 8 bit with a shared exponent",
+            _ => self.source.depth.name(),
+        }
+    }
+
+    /// The share of red, green and blue in luminance (Y of CIE 1931); they add up to 1.
+    ///
+    /// Rec.709's 0.2126, 0.7152, 0.0722 unless the file names other primaries.
+    pub fn luminance_weights(&self) -> [f64; 3] {
+        self.source.primaries.map_or([0.2126, 0.7152, 0.0722], |primaries| primaries.luminance_weights())
+    }
+
+    /// From the photo's primaries to Rec.709, white to white; none where they are the same.
+    fn to_rec709(&self) -> Option<DMat3> {
+        self.source.primaries.map(|primaries| primaries.to_rec709())
+    }
+
+    /// The pixels of row `y` of the picture, transparent black where none are stored.
+    fn picture_row(&self, y: u32) -> std::borrow::Cow<'_, [[f32; 4]]> {
+        let window = self.frame.window;
+        let stored = usize::try_from(i64::from(y) - i64::from(window.y)).ok().filter(|&r| r < window.height as usize);
+        let row = stored.map_or(&[][..], |r| &self.pixels[r * window.width as usize..][..window.width as usize]);
+        if !row.is_empty() && window.x == 0 && window.width == self.frame.width {
+            return row.into();
+        }
+        let mut full = vec![[0.0; 4]; self.frame.width as usize];
+        // A window may begin left of the picture, right of it, or within.
+        let skip = (-i64::from(window.x)).max(0) as usize;
+        let start = i64::from(window.x).max(0) as usize;
+        if let (Some(from), Some(to)) = (row.get(skip..), full.get_mut(start..)) {
+            let count = from.len().min(to.len());
+            to[..count].copy_from_slice(&from[..count]);
+        }
+        full.into()
+    }
+}
+
+/// Zeroed memory for `count` elements, or a reason instead of an abort where there is not enough.
+///
+/// The system hands it out page by page as it is touched, so that a file which lies about its size costs nothing.
+fn zeroed<T: bytemuck::Zeroable>(count: usize) -> Result<Vec<T>, Reason> {
+    match bytemuck::allocation::try_zeroed_slice_box(count) {
+        Ok(memory) => Ok(memory.into_vec()),
+        Err(()) => Err(format!("not enough memory for {count} samples of {} bytes", size_of::<T>()).into()),
+    }
 }

@@ -1,3 +1,4 @@
-//! vglare's promises, one module each.
+//! The promises, one module each.
 
+mod photo;
 mod scene;

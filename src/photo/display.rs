@@ -1,0 +1,137 @@
+//! From linear light to the integer samples of PNG, JPEG and TIFF.
+//!
+//! [IGN] Jorge Jimenez, "Next generation post processing in Call of Duty: Advanced Warfare", SIGGRAPH 2014:
+//! interleaved gradient noise.
+
+use glam::{Mat3A, Vec3A};
+use rayon::prelude::*;
+
+use super::transfer::srgb_encode;
+use super::{Alpha, Photo, Reason, ToneMap, zeroed};
+
+/// How light becomes what a display shows.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Look {
+    /// Multiplies the light first; 2 to the exposure in stops.
+    pub gain: f32,
+    /// Applied next.
+    pub tone_map: ToneMap,
+}
+
+/// The samples of a picture, ready for an encoder.
+pub(super) struct Samples<T> {
+    /// 1 grey, 2 grey and alpha, 3 RGB, 4 RGBA.
+    pub channels: usize,
+    /// Pixel by pixel, row by row from the top.
+    pub data: Vec<T>,
+}
+
+/// An integer sample.
+pub(super) trait Code: bytemuck::Pod + Send + Sync {
+    /// The code of full light.
+    const MAX: f32;
+    /// Half the width of the dither, in codes.
+    const DITHER: f32;
+    /// The code of a number in 0..=MAX.
+    fn new(value: f32) -> Self;
+}
+
+impl Code for u8 {
+    const MAX: f32 = 255.0;
+    // Inside ±0.5, with room for the rounding of the transfer function: light that sits on a code keeps it.
+    const DITHER: f32 = 0.48;
+
+    fn new(value: f32) -> Self {
+        value as Self
+    }
+}
+
+impl Code for u16 {
+    const MAX: f32 = 65535.0;
+    const DITHER: f32 = 0.0;
+
+    fn new(value: f32) -> Self {
+        value as Self
+    }
+}
+
+/// Whether the photo was grey and still is.
+pub(super) fn is_grey(photo: &Photo) -> bool {
+    let same = |p: &[f32; 4]| p[0].to_bits() == p[1].to_bits() && p[0].to_bits() == p[2].to_bits();
+    photo.source.grey && photo.pixels.par_iter().all(same)
+}
+
+/// The samples of the whole picture; alpha goes along where `alpha` says so.
+pub(super) fn encode<T: Code>(photo: &Photo, look: Look, alpha: bool) -> Result<Samples<T>, Reason> {
+    let grey = is_grey(photo);
+    let channels = if grey { 1 } else { 3 } + usize::from(alpha);
+    let width = photo.width() as usize;
+    let mut data = zeroed::<T>(width * photo.height() as usize * channels)?;
+    let gamut = photo.to_rec709().map_or(Mat3A::IDENTITY, |m| Mat3A::from(m.as_mat3()));
+    let same_gamut = photo.to_rec709().is_none();
+    data.par_chunks_exact_mut(width * channels).enumerate().for_each(|(y, row)| {
+        let pixels = photo.picture_row(y as u32);
+        for (x, (out, &[r, g, b, a])) in row.chunks_exact_mut(channels).zip(pixels.iter()).enumerate() {
+            let light = if same_gamut { [r, g, b] } else { (gamut * Vec3A::new(r, g, b)).to_array() };
+            let shown = look.tone_map.apply(light.map(|c| c * look.gain));
+            // The same noise for all three colours: grey stays grey.
+            let noise = T::DITHER * (2.0 * gradient_noise(x as f32, y as f32) - 1.0);
+            let code = |c: f32| T::new((srgb_encode(c) * T::MAX + noise).round().clamp(0.0, T::MAX));
+            out[0] = code(shown[0]);
+            if !grey {
+                (out[1], out[2]) = (code(shown[1]), code(shown[2]));
+            }
+            if alpha {
+                out[channels - 1] = T::new((a.max(0.0) * T::MAX).round().min(T::MAX));
+            }
+        }
+    });
+    Ok(Samples { channels, data })
+}
+
+/// Whether the photo's alpha is one that a format of straight alpha can hold.
+pub(super) fn has_straight_alpha(photo: &Photo) -> bool {
+    photo.source.alpha == Alpha::Straight
+}
+
+/// [IGN]: noise in 0..1 without large lumps.
+fn gradient_noise(x: f32, y: f32) -> f32 {
+    (52.982_918 * (0.067_110_56 * x + 0.005_837_15 * y).fract()).fract()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::transfer::Curve;
+    use super::*;
+
+    const PLAIN: Look = Look { gain: 1.0, tone_map: ToneMap::None };
+
+    #[test]
+    fn every_8_bit_code_survives_wherever_it_stands() {
+        let light = |c: usize| Curve::Srgb.light(c as f64 / 255.0) as f32;
+        let codes = (0..256 * 64).map(|i| (i % 256 + i / 256 * 37) % 256).collect::<Vec<_>>();
+        let pixels = codes.iter().map(|&c| [light(c), light(255 - c), light(c / 2), 1.0]).collect();
+        let got = encode::<u8>(&Photo::new(256, 64, pixels), PLAIN, false).unwrap();
+        for (&c, got) in codes.iter().zip(got.data.chunks_exact(3)) {
+            assert_eq!(got, [c as u8, 255 - c as u8, c as u8 / 2]);
+        }
+    }
+
+    #[test]
+    fn dither_keeps_the_mean_of_light_between_two_codes() {
+        let between = (Curve::Srgb.light(100.0 / 255.0) * 0.7 + Curve::Srgb.light(101.0 / 255.0) * 0.3) as f32;
+        let got = encode::<u8>(&Photo::new(200, 200, vec![[between; 4]; 40_000]), PLAIN, false).unwrap();
+        let mean = got.data.iter().map(|&c| f64::from(c)).sum::<f64>() / got.data.len() as f64;
+        assert!(got.data.iter().all(|c| (100..=101).contains(c)));
+        assert!((mean - 100.3).abs() < 0.03, "{mean}");
+    }
+
+    #[test]
+    fn exposure_is_in_stops_and_bad_pixels_have_a_place() {
+        let bad = [f32::NAN, f32::NEG_INFINITY, f32::INFINITY, f32::NAN];
+        let photo = Photo::new(2, 1, vec![[0.25, 0.25, 0.5, 1.0], bad]);
+        let got = encode::<u16>(&photo, Look { gain: 2.0, tone_map: ToneMap::None }, true).unwrap();
+        let half = (srgb_encode(0.5) * 65535.0).round() as u16;
+        assert_eq!(got.data, [half, half, 65535, 65535, 0, 0, 65535, 0]);
+    }
+}

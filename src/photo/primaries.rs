@@ -1,0 +1,118 @@
+//! The primaries of a colour space: its way to Rec.709, and its luminance.
+
+use glam::{DMat3, DVec2, DVec3};
+
+/// CIE 1931 chromaticities (x, y) of a colour space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Primaries {
+    /// Of (1, 0, 0).
+    pub red: DVec2,
+    /// Of (0, 1, 0).
+    pub green: DVec2,
+    /// Of (0, 0, 1).
+    pub blue: DVec2,
+    /// Of (1, 1, 1).
+    pub white: DVec2,
+}
+
+const D65: DVec2 = DVec2::new(0.3127, 0.3290);
+
+impl Primaries {
+    /// ITU-R BT.709, also sRGB's.
+    pub const REC709: Self = Self::new([0.64, 0.33], [0.30, 0.60], [0.15, 0.06], D65);
+    /// ITU-R BT.2020.
+    pub const REC2020: Self = Self::new([0.708, 0.292], [0.170, 0.797], [0.131, 0.046], D65);
+    /// SMPTE EG 432-1, Display P3.
+    pub const P3_D65: Self = Self::new([0.680, 0.320], [0.265, 0.690], [0.150, 0.060], D65);
+
+    const fn new(red: [f64; 2], green: [f64; 2], blue: [f64; 2], white: DVec2) -> Self {
+        Self { red: DVec2::from_array(red), green: DVec2::from_array(green), blue: DVec2::from_array(blue), white }
+    }
+
+    /// These primaries, if they span a colour space and are not Rec.709's (to three decimals, as files round them).
+    pub(super) fn other_than_rec709(self) -> Option<Self> {
+        let near = |a: DVec2, b: DVec2| (a - b).abs().max_element() < 1e-3;
+        let r = Self::REC709;
+        let same = near(self.red, r.red) && near(self.green, r.green) && near(self.blue, r.blue);
+        let sound = self.to_xyz().is_some_and(|m| m.is_finite() && m.determinant().abs() > 1e-6);
+        (sound && !(same && near(self.white, r.white))).then_some(self)
+    }
+
+    /// The share of red, green and blue in luminance; they add up to 1.
+    pub fn luminance_weights(&self) -> [f64; 3] {
+        self.to_xyz().unwrap_or(DMat3::IDENTITY).row(1).to_array()
+    }
+
+    /// The matrix from this space to Rec.709: white to white, by Bradford's adaptation.
+    pub(super) fn to_rec709(self) -> DMat3 {
+        let (from, to) = (self.to_xyz(), Self::REC709.to_xyz());
+        match (from, to) {
+            (Some(from), Some(to)) => to.inverse() * adapt(self.white, Self::REC709.white) * from,
+            _ => DMat3::IDENTITY,
+        }
+    }
+
+    /// RGB to XYZ with Y = 1 at white: each primary's XYZ, scaled so that they add up to white.
+    fn to_xyz(self) -> Option<DMat3> {
+        let directions = DMat3::from_cols(xyz(self.red), xyz(self.green), xyz(self.blue));
+        let scale = directions.inverse() * xyz(self.white);
+        let matrix = directions * DMat3::from_diagonal(scale);
+        (directions.determinant().abs() > 1e-9 && matrix.is_finite()).then_some(matrix)
+    }
+}
+
+/// XYZ of a chromaticity at Y = 1.
+fn xyz(c: DVec2) -> DVec3 {
+    DVec3::new(c.x / c.y, 1.0, (1.0 - c.x - c.y) / c.y)
+}
+
+/// Bradford's chromatic adaptation: Lam 1985, as in ICC.1:2022 annex E.
+fn adapt(from: DVec2, to: DVec2) -> DMat3 {
+    let cone = DMat3::from_cols_array(&[0.8951, -0.7502, 0.0389, 0.2664, 1.7135, -0.0685, -0.1614, 0.0367, 1.0296]);
+    let ratio = (cone * xyz(to)) / (cone * xyz(from));
+    cone.inverse() * DMat3::from_diagonal(ratio) * cone
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ACESCG: Primaries =
+        Primaries::new([0.713, 0.293], [0.165, 0.830], [0.128, 0.044], DVec2::new(0.32168, 0.33767));
+
+    #[test]
+    fn luminance_weights_are_the_published_ones() {
+        let close = |p: Primaries, want: [f64; 3]| {
+            let got = p.luminance_weights();
+            assert!(got.iter().zip(want).all(|(g, w)| (g - w).abs() < 1e-4), "{got:?} for {want:?}");
+        };
+        close(Primaries::REC709, [0.2126, 0.7152, 0.0722]);
+        close(Primaries::REC2020, [0.2627, 0.6780, 0.0593]);
+        close(ACESCG, [0.2722, 0.6741, 0.0537]);
+    }
+
+    #[test]
+    fn acescg_to_rec709_is_the_published_matrix() {
+        // ACES Output Transform, AP1 to Rec.709 with Bradford D60 to D65.
+        let want = [[1.70505, -0.62179, -0.08326], [-0.13026, 1.14080, -0.01055], [-0.02400, -0.12897, 1.15297]];
+        let got = ACESCG.to_rec709();
+        for (row, want) in want.iter().enumerate() {
+            for (column, want) in want.iter().enumerate() {
+                let got = got.col(column)[row];
+                assert!((got - want).abs() < 2e-4, "row {row} column {column}: {got} for {want}");
+            }
+        }
+    }
+
+    #[test]
+    fn senseless_primaries_are_ignored() {
+        let point = Primaries::new([0.3, 0.3], [0.3, 0.3], [0.3, 0.3], D65);
+        assert_eq!(point.other_than_rec709(), None);
+        let nan = Primaries::new([f64::NAN, 0.3], [0.3, 0.6], [0.15, 0.06], D65);
+        assert_eq!(nan.other_than_rec709(), None);
+        let zero = Primaries::new([0.0; 2], [0.0; 2], [0.0; 2], DVec2::ZERO);
+        assert_eq!(zero.other_than_rec709(), None);
+        assert_eq!(Primaries::REC709.other_than_rec709(), None);
+        assert_eq!(ACESCG.other_than_rec709(), Some(ACESCG));
+    }
+}

@@ -1,0 +1,85 @@
+//! Opens a file, tells its format by its content, and decodes it.
+
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Cursor, Read, Seek};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+
+use super::{Format, Photo, Reason, exr, jpeg, pfm, png, radiance, tiff};
+use crate::error::{Error, Result};
+
+/// The most pixels that a photo may have, 2^29: 8 GiB in memory.
+pub const MAX_PIXELS: usize = 1 << 29;
+
+/// Reads a photo.
+///
+/// # Errors
+/// [`Error::ReadPhoto`] with the reason: missing, empty, cut short, damaged, of another kind, of no or more than
+/// [`MAX_PIXELS`] pixels.
+pub fn read(path: &Path) -> Result<Photo> {
+    let decoded = || {
+        let mut reader = open(path)?;
+        let format = Format::from_magic(reader.fill_buf()?)?;
+        decode(reader, format)
+    };
+    // Decoders of foreign files are the one place where a panic is not a bug of ours.
+    match catch_unwind(AssertUnwindSafe(decoded)) {
+        Ok(Ok(photo)) => Ok(photo),
+        Ok(Err(reason)) => Err(Error::read_photo(path, explain(&*reason))),
+        Err(_) => Err(Error::read_photo(path, "the file is damaged, and its decoder gave up")),
+    }
+}
+
+fn decode(reader: Box<dyn Input>, format: Format) -> std::result::Result<Photo, Reason> {
+    match format {
+        Format::OpenExr => exr::read(reader),
+        Format::Radiance => radiance::read(reader),
+        Format::Pfm => pfm::read(reader),
+        Format::Tiff => tiff::read(reader),
+        Format::Png => png::read(reader),
+        Format::Jpeg => jpeg::read(reader),
+    }
+}
+
+/// What decoders read from.
+trait Input: BufRead + Seek {}
+impl<T: BufRead + Seek> Input for T {}
+
+fn open(path: &Path) -> std::result::Result<Box<dyn Input>, Reason> {
+    let mut file = File::open(path)?;
+    let kind = file.metadata()?;
+    if kind.is_dir() {
+        return Err("it is a folder".into());
+    }
+    if kind.is_file() {
+        return Ok(Box::new(BufReader::with_capacity(1 << 16, file)));
+    }
+    // Decoders jump about, which a pipe cannot; a device that never ends is turned away by its first bytes.
+    let mut head = Vec::new();
+    file.by_ref().take(64).read_to_end(&mut head)?;
+    Format::from_magic(&head)?;
+    file.read_to_end(&mut head)?;
+    Ok(Box::new(Cursor::new(head)))
+}
+
+/// The number of pixels of a picture, if it has any and not too many.
+pub(super) fn check_size(width: u32, height: u32) -> std::result::Result<usize, Reason> {
+    match width as usize * height as usize {
+        0 => Err(format!("it has no pixels: {width} × {height}").into()),
+        count if count > MAX_PIXELS => {
+            Err(format!("it says that it has {width} × {height} pixels, more than {MAX_PIXELS}").into())
+        }
+        count => Ok(count),
+    }
+}
+
+/// The reason in words. All decoders mean the same by an early end, and wrap it each in its own way.
+fn explain(reason: &(dyn std::error::Error + 'static)) -> String {
+    let text = reason.to_string();
+    let early = io::Error::from(io::ErrorKind::UnexpectedEof).to_string();
+    // The words of `Read::read_exact`.
+    if text.contains("failed to fill whole buffer") || text.contains(&early) {
+        return "the file is cut short".into();
+    }
+    text
+}

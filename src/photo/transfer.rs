@@ -1,0 +1,84 @@
+//! Transfer functions: from the numbers in a file to light, and for sRGB back.
+//!
+//! [SRGB] IEC 61966-2-1:1999; [709] ITU-R BT.709-6, item 1.2; [2100] ITU-R BT.2100-2, tables 4 and 5;
+//! [2408] ITU-R BT.2408-7, section 2.1: reference white is 203 cd/m², and 75 % of the HLG signal.
+
+/// How encoded values become linear light; display white is 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Curve {
+    /// They are linear already.
+    Linear,
+    /// [SRGB]
+    Srgb,
+    /// A power: light = value ^ exponent.
+    Power(f64),
+    /// [709], inverse of the camera's function.
+    Rec709,
+    /// [2100] PQ, in units of 203 cd/m².
+    Pq,
+    /// [2100] HLG, scene light in units of the light of a 75 % signal.
+    Hlg,
+}
+
+impl Curve {
+    /// Light of the encoded value `v`, usually in 0..1; negative values mirror.
+    pub fn light(self, v: f64) -> f64 {
+        self.light_of_positive(v.abs()).copysign(v)
+    }
+
+    fn light_of_positive(self, v: f64) -> f64 {
+        match self {
+            Self::Linear => v,
+            Self::Srgb if v <= 0.04045 => v / 12.92,
+            Self::Srgb => ((v + 0.055) / 1.055).powf(2.4),
+            Self::Power(exponent) => v.powf(exponent),
+            Self::Rec709 if v < 0.081 => v / 4.5,
+            Self::Rec709 => ((v + 0.099) / 1.099).powf(1.0 / 0.45),
+            Self::Pq => pq(v) * 10_000.0 / 203.0,
+            Self::Hlg => hlg(v) / hlg(0.75),
+        }
+    }
+}
+
+/// [2100] table 4: cd/m² / 10000 of a PQ signal.
+fn pq(v: f64) -> f64 {
+    let (m1, m2) = (2610.0 / 16384.0, 2523.0 / 4096.0 * 128.0);
+    let (c1, c2, c3) = (3424.0 / 4096.0, 2413.0 / 4096.0 * 32.0, 2392.0 / 4096.0 * 32.0);
+    let e = v.powf(1.0 / m2);
+    ((e - c1).max(0.0) / (c2 - c3 * e)).powf(1.0 / m1)
+}
+
+/// [2100] table 5: scene light in 0..1 of an HLG signal.
+fn hlg(v: f64) -> f64 {
+    let (a, b, c) = (0.178_832_77, 0.284_668_92, 0.559_910_73);
+    if v <= 0.5 { v * v / 3.0 } else { (((v - c) / a).exp() + b) / 12.0 }
+}
+
+/// [SRGB] the encoded value of `light` in 0..1.
+pub(super) fn srgb_encode(light: f32) -> f32 {
+    if light <= 0.003_130_8 { light * 12.92 } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_16_bit_code_survives_srgb() {
+        for code in 0..=65535_u32 {
+            let light = Curve::Srgb.light(f64::from(code) / 65535.0) as f32;
+            assert_eq!((srgb_encode(light) * 65535.0).round() as u32, code);
+        }
+    }
+
+    #[test]
+    fn published_points_are_met() {
+        assert!((Curve::Srgb.light(0.5) - 0.214_041_14).abs() < 1e-8);
+        assert!((Curve::Srgb.light(-0.5) + 0.214_041_14).abs() < 1e-8);
+        // [2408] table 1: reference white is at 58 % of PQ and 75 % of HLG.
+        assert!((Curve::Pq.light(0.5807) - 1.0).abs() < 2e-3, "{}", Curve::Pq.light(0.5807));
+        assert_eq!(Curve::Hlg.light(0.75), 1.0);
+        assert!((Curve::Pq.light(1.0) - 49.26).abs() < 0.01);
+        assert!((Curve::Rec709.light(1.0) - 1.0).abs() < 1e-12);
+    }
+}
