@@ -27,7 +27,8 @@ pub fn compare(exact: &[[f64; 3]], actual: &[[f64; 3]]) -> Difference {
         let errors = exact.iter().zip(actual).map(|(exact, actual)| {
             if actual[colour].is_finite() { (actual[colour] - exact[colour]).abs() } else { f64::INFINITY }
         });
-        let (index, error) = errors.enumerate().fold((0, 0.0), |worst, next| if next.1 > worst.1 { next } else { worst });
+        let (index, error) =
+            errors.enumerate().fold((0, 0.0), |worst, next| if next.1 > worst.1 { next } else { worst });
         let largest = exact.iter().map(|value| value[colour].abs()).fold(0.0, f64::max);
         let relative = if error == 0.0 { 0.0 } else { error / largest };
         if relative > result.relative {

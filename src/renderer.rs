@@ -11,7 +11,7 @@ mod tiles;
 use std::rc::Rc;
 
 use crate::frame::{Frame, Window};
-use crate::gpu::composite::{Composite, CompositePass};
+use crate::gpu::composite::{Composite, CompositePass, Variant};
 use crate::gpu::copy::CopyPass;
 use crate::gpu::evaluators::Evaluators;
 use crate::gpu::field::{FieldPass, Source};
@@ -110,9 +110,14 @@ impl Renderer {
         if plan.evaluator == Evaluator::Direct {
             self.evaluators.set_ghosts(&direct_ghosts(ghosts, plan))?;
         } else {
-            let spectral: Vec<_> = plan.groups.iter().map(|group| spectral_ghosts(ghosts, plan, &group.members)).collect();
+            let spectral: Vec<_> =
+                plan.groups.iter().map(|group| spectral_ghosts(ghosts, plan, &group.members)).collect();
             let groups: Vec<_> = (plan.groups.iter().zip(&spectral))
-                .map(|(group, ghosts)| SpectrumGroup { bell: group.bell.shape().shader(), ghosts, degree: group.degree })
+                .map(|(group, ghosts)| SpectrumGroup {
+                    bell: group.bell.shape().shader(),
+                    ghosts,
+                    degree: group.degree,
+                })
                 .collect();
             self.spectrum.compute(&self.runner, &plan.counts, &groups)?;
         }
@@ -133,7 +138,7 @@ impl Renderer {
             let at = offset(frame.window, tile);
             let photo = self.composite.photo(&self.runner, tile.width, tile.height)?;
             self.runner.run("upload", || photo.write(&pixels[at..], stride, tile.width, tile.height));
-            let picture = self.composite.draw(&self.runner, source, &uniforms)?;
+            let picture = self.composite.draw(&self.runner, variant(source, settings), &uniforms)?;
             self.runner.run("readback", || picture.read(&mut pixels[at..], stride, tile.width, tile.height));
         }
         Ok(())
@@ -160,7 +165,7 @@ impl Renderer {
     pub fn draw(&mut self, frame: Frame, settings: &Settings) -> Result<()> {
         let uniforms = self.start(frame, settings)?;
         let source = self.evaluate(frame, frame.window)?;
-        self.composite.draw(&self.runner, source, &uniforms)?;
+        self.composite.draw(&self.runner, variant(source, settings), &uniforms)?;
         Ok(())
     }
 
@@ -193,11 +198,21 @@ impl Renderer {
         for tile in self.tiles(frame.window) {
             let source = self.evaluate(frame, tile)?;
             let size = [tile.width, tile.height];
-            let glare = self.composite.draw_glare(&self.runner, source, &uniforms, size)?;
+            let glare = self.composite.draw_glare(&self.runner, variant(source, settings), &uniforms, size)?;
             let at = offset(frame.window, tile);
             self.runner.run("readback", || glare.read(&mut pixels[at..], stride, tile.width, tile.height));
         }
         Ok(pixels)
+    }
+
+    /// The smallest and the largest value of the field over the frame's window, all colours alike, by the reduction
+    /// that [`Normalize::Minmax`] uses.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the driver refuses, or where there is no scene.
+    pub fn range(&mut self, frame: Frame) -> Result<[f32; 2]> {
+        self.reduce(frame)?;
+        Ok(self.range.read())
     }
 
     /// The field, neither normalised nor multiplied by any strength, at pixels of the frame's window, given as columns
@@ -259,20 +274,25 @@ impl Renderer {
             light_gain: rgb(settings.light_gain, 1.0),
             luminance: rgb(settings.luminance, settings.threshold),
             strength: settings.strength as f32,
-            normalize: settings.normalize as u32,
-            pad: [0; 2],
+            pad: [0.0; 3],
         };
         if settings.normalize == Normalize::Minmax {
-            self.range.reset();
-            let scale = plan.scale.map(|scale| scale as f32);
-            for tile in self.tiles(frame.window) {
-                let source = self.evaluate(frame, tile)?;
-                let field = self.field.draw(&self.runner, source, tile.width, tile.height)?;
-                self.range.add(&self.runner, field, scale)?;
-            }
+            self.reduce(frame)?;
         }
         self.range.bind();
         Ok(uniforms)
+    }
+
+    /// Finds the field's range over the frame's window, and leaves it on the device.
+    fn reduce(&mut self, frame: Frame) -> Result<()> {
+        let scale = self.plan()?.scale.map(|scale| scale as f32);
+        self.range.reset();
+        for tile in self.tiles(frame.window) {
+            let source = self.evaluate(frame, tile)?;
+            let field = self.field.draw(&self.runner, source, tile.width, tile.height)?;
+            self.range.add(&self.runner, field, scale)?;
+        }
+        Ok(())
     }
 
     /// Readies the plan's evaluator for a tile.
@@ -313,6 +333,16 @@ fn source(evaluator: Evaluator) -> Source {
         Evaluator::Rows => Source { evaluator: "\"evaluators/rows.glsl\"", bell: None },
         Evaluator::Grid => Source { evaluator: "\"evaluators/grid.glsl\"", bell: None },
     }
+}
+
+/// The composite that the settings ask for.
+fn variant(source: Source, settings: &Settings) -> Variant {
+    let normalize = match settings.normalize {
+        Normalize::None => "0",
+        Normalize::Clamp => "1",
+        Normalize::Minmax => "2",
+    };
+    Variant { source, normalize, take_light: settings.light_gain != [1.0; 3] }
 }
 
 /// Where a tile's first pixel stands among the window's.

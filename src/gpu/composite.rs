@@ -20,11 +20,31 @@ pub(crate) struct Composite {
     pub luminance: [f32; 4],
     /// What the normalised glare is multiplied by.
     pub strength: f32,
-    /// 0 none, 1 clamp to 0..1, 2 stretch to 0..1 by the range.
-    pub normalize: u32,
-    pub pad: [u32; 2],
+    pub pad: [f32; 3],
 }
 const _: () = assert!(size_of::<Composite>() == 64);
+
+/// What the composite's shader is specialised with: what it leaves out costs nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Variant {
+    /// Where the field comes from.
+    pub source: Source,
+    /// `"0"` none, `"1"` clamp to 0..1, `"2"` stretch to 0..1 by the range.
+    pub normalize: &'static str,
+    /// Whether the photo's lights are multiplied by `light_gain`.
+    pub take_light: bool,
+}
+
+impl Variant {
+    fn defines(self) -> Vec<(&'static str, &'static str)> {
+        let mut defines = self.source.defines();
+        defines.push(("NORMALIZE", self.normalize));
+        if self.take_light {
+            defines.push(("TAKE_LIGHT", "1"));
+        }
+        defines
+    }
+}
 
 /// Draws the picture.
 pub(crate) struct CompositePass {
@@ -35,11 +55,7 @@ pub(crate) struct CompositePass {
 
 impl CompositePass {
     pub fn new(runner: &Runner) -> Result<Self> {
-        Ok(Self {
-            photo: Scratch::default(),
-            picture: Scratch::default(),
-            uniforms: Buffer::new(runner.device(), 1)?,
-        })
+        Ok(Self { photo: Scratch::default(), picture: Scratch::default(), uniforms: Buffer::new(runner.device(), 1)? })
     }
 
     /// A tile of the photo on the device, to be filled and then composited.
@@ -53,22 +69,22 @@ impl CompositePass {
     }
 
     /// The tile that [`CompositePass::photo`] holds, with its glare.
-    pub fn draw(&mut self, runner: &Runner, source: Source, settings: &Composite) -> Result<&Texture> {
+    pub fn draw(&mut self, runner: &Runner, variant: Variant, settings: &Composite) -> Result<&Texture> {
         let photo = self.loaded()?;
         photo.bind(PHOTO);
         let (width, height) = (photo.level_width(0), photo.level_height(0));
-        Self::run(&mut self.picture, &mut self.uniforms, runner, &source.defines(), settings, [width, height])
+        Self::run(&mut self.picture, &mut self.uniforms, runner, &variant.defines(), settings, [width, height])
     }
 
     /// What [`CompositePass::draw`] would add to the photo.
     pub fn draw_glare(
         &mut self,
         runner: &Runner,
-        source: Source,
+        variant: Variant,
         settings: &Composite,
         size: [u32; 2],
     ) -> Result<&Texture> {
-        let mut defines = source.defines();
+        let mut defines = variant.defines();
         defines.push(("GLARE_ALONE", "1"));
         Self::run(&mut self.picture, &mut self.uniforms, runner, &defines, settings, size)
     }

@@ -15,13 +15,10 @@ pub(crate) struct Source {
 }
 
 impl Source {
-    /// The field as [`FieldPass`] stored it.
-    pub const STORED: Self = Self { evaluator: "\"evaluators/stored.glsl\"", bell: None };
-
     /// What a shader is specialised with to include this function.
     pub fn defines(self) -> Vec<(&'static str, &'static str)> {
         let mut defines = vec![("EVALUATOR", self.evaluator)];
-        defines.push(("NORMALIZE","0")); defines.extend(self.bell.map(|bell| ("BELL", bell)));
+        defines.extend(self.bell.map(|bell| ("BELL", bell)));
         defines
     }
 }
@@ -35,11 +32,7 @@ pub(crate) struct FieldPass {
 
 impl FieldPass {
     pub fn new(runner: &Runner) -> Result<Self> {
-        Ok(Self {
-            field: Scratch::default(),
-            probed: Scratch::default(),
-            probes: Buffer::new(runner.device(), 0)?,
-        })
+        Ok(Self { field: Scratch::default(), probed: Scratch::default(), probes: Buffer::new(runner.device(), 0)? })
     }
 
     /// The field of a tile of `width` × `height` pixels, in units of its scale.

@@ -1,7 +1,7 @@
 //! cos and sin of every harmonic at a list of positions along one axis, as a texture.
 
 use super::layout::{Binding, PASS, PHASES};
-use super::resource::{Buffer, Scratch, Texel, Texture};
+use super::resource::{Buffer, Scratch, Texel};
 use super::runner::Runner;
 use crate::Result;
 
@@ -38,11 +38,6 @@ impl Harmonics {
         runner.draw("harmonics.frag", &[], texture, 0)?;
         texture.bind(self.unit);
         Ok(())
-    }
-
-    /// The table, if it was ever filled.
-    pub fn texture(&self) -> Option<&Texture> {
-        self.texture.current()
     }
 
     /// Binds the table as it was last filled.

@@ -36,8 +36,24 @@ pub(crate) const WORKBENCH: Binding = ("UNIT_WORKBENCH", 9);
 
 /// Every binding, for the head of every shader.
 pub(crate) const BINDINGS: [Binding; 18] = [
-    PASS, GHOSTS, PARTIALS, SPECTRUM, OFFSETS, PHASES, PROBES, KNOTS_X, KNOTS_Y, PHOTO, FIELD, HARMONICS_X, HARMONICS_Y,
-    PROFILES, LATTICE, CELLS, STRIPS, RANGE,
+    PASS,
+    GHOSTS,
+    PARTIALS,
+    SPECTRUM,
+    OFFSETS,
+    PHASES,
+    PROBES,
+    KNOTS_X,
+    KNOTS_Y,
+    PHOTO,
+    FIELD,
+    HARMONICS_X,
+    HARMONICS_Y,
+    PROFILES,
+    LATTICE,
+    CELLS,
+    STRIPS,
+    RANGE,
 ];
 
 /// One ghost as the spectrum's shader reads it.

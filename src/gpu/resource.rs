@@ -169,13 +169,7 @@ impl Texture {
             ] {
                 gl.tex_parameter_i32(glow::TEXTURE_2D, name, value as i32);
             }
-            gl.tex_storage_2d(
-                glow::TEXTURE_2D,
-                levels as i32,
-                texel.internal_format(),
-                width as i32,
-                height as i32,
-            );
+            gl.tex_storage_2d(glow::TEXTURE_2D, levels as i32, texel.internal_format(), width as i32, height as i32);
         }
         for level in 0..levels {
             let framebuffer = unsafe { gl.create_framebuffer() }.map_err(refused("framebuffer"))?;
@@ -187,7 +181,9 @@ impl Texture {
                 gl.check_framebuffer_status(glow::FRAMEBUFFER)
             };
             if status != glow::FRAMEBUFFER_COMPLETE {
-                return Err(Error::Gl(format!("a {texel:?} texture of {width}x{height} cannot be drawn into: {status:#x}")));
+                return Err(Error::Gl(format!(
+                    "a {texel:?} texture of {width}x{height} cannot be drawn into: {status:#x}"
+                )));
             }
         }
         Ok(texture)

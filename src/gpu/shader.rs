@@ -29,7 +29,6 @@ const SOURCES: &[(&str, &str)] = &sources![
     "evaluators/grid.glsl",
     "evaluators/rows.glsl",
     "evaluators/series.glsl",
-    "evaluators/stored.glsl",
     "field.frag",
     "fullscreen.vert",
     "harmonics.frag",
@@ -188,8 +187,8 @@ mod tests {
 
     #[test]
     fn a_file_is_included_once_and_lines_keep_their_numbers() {
-        let (text, files) = assemble("field.frag", &[("EVALUATOR", "\"evaluators/stored.glsl\"")]).unwrap();
-        assert_eq!(files, ["field.frag", "evaluators/stored.glsl"]);
+        let (text, files) = assemble("field.frag", &[("EVALUATOR", "\"evaluators/rows.glsl\"")]).unwrap();
+        assert_eq!(files, ["field.frag", "evaluators/rows.glsl", "shared/spectrum.glsl"]);
         assert!(text.contains("#line 1 1"), "{text}");
         assert!(!text.contains("#include"), "{text}");
     }

@@ -43,11 +43,23 @@ pub(super) fn weigh(ghosts: &[Ghost], request: &Request) -> Weighed {
     // others' scale: nothing is not to be computed to a thousandth of itself.
     let largest = scale.iter().fold(0.0f64, |a, &b| a.max(b));
     let floor = if largest > 0.0 { largest * 1e-30 } else { 1.0 };
-    let scale = scale.map(|value| if value > floor { value } else if largest > 0.0 { largest } else { 1.0 });
+    let scale = scale.map(|value| {
+        if value > floor {
+            value
+        } else if largest > 0.0 {
+            largest
+        } else {
+            1.0
+        }
+    });
 
     let mut weights: Vec<f64> = ghosts.iter().map(|ghost| peak_weight(ghost, scale)).collect();
-    let reached: Vec<f64> =
-        ghosts.iter().zip(&nearest).zip(&weights).map(|((ghost, &offset), w)| w * ghost.bell.shape().value(offset)).collect();
+    let reached: Vec<f64> = ghosts
+        .iter()
+        .zip(&nearest)
+        .zip(&weights)
+        .map(|((ghost, &offset), w)| w * ghost.bell.shape().value(offset))
+        .collect();
     let (dropped, dropped_error) = drop_faint(&mut weights, &reached, share::DROPPED * request.tolerance);
     Weighed { scale, peaks, weights, dropped, dropped_error }
 }
@@ -88,7 +100,8 @@ fn probes(ghosts: &[Ghost], nearest: &[DVec2], frame: Frame) -> Vec<[i32; 2]> {
     let side = ((most - strongest) as f64).sqrt() as u32;
     for i in 0..side.min(GRID) {
         for j in 0..side.min(GRID) {
-            let across = |k: u32, length: u32| (f64::from(k) + 0.5) / f64::from(side.min(GRID)) * f64::from(length) - 0.5;
+            let across =
+                |k: u32, length: u32| (f64::from(k) + 0.5) / f64::from(side.min(GRID)) * f64::from(length) - 0.5;
             let corner = DVec2::new(f64::from(window.x), f64::from(window.y));
             pixels.push(inside(corner + DVec2::new(across(i, window.width), across(j, window.height))));
         }
@@ -103,7 +116,8 @@ fn probes(ghosts: &[Ghost], nearest: &[DVec2], frame: Frame) -> Vec<[i32; 2]> {
 /// Ghosts are told apart by powers of two only, so that no sorting is needed.
 fn drop_faint(weights: &mut [f64], reached: &[f64], budget: f64) -> (usize, f64) {
     const LOWEST: i32 = -200;
-    let bin = |value: f64| if value > 0.0 { value.log2().floor().clamp(f64::from(LOWEST), 55.0) as i32 } else { LOWEST };
+    let bin =
+        |value: f64| if value > 0.0 { value.log2().floor().clamp(f64::from(LOWEST), 55.0) as i32 } else { LOWEST };
     let mut sums = [0.0f64; 256];
     for &value in reached {
         sums[(bin(value) - LOWEST) as usize] += value;

@@ -119,8 +119,7 @@ mod tests {
 
     #[test]
     fn a_tile_sees_the_nodes_that_the_whole_window_sees() {
-        let lattice =
-            Lattice { step: DVec2::new(0.037, 0.051), nodes: [0; 2], oversampling: DVec2::ONE, error: 0.0 };
+        let lattice = Lattice { step: DVec2::new(0.037, 0.051), nodes: [0; 2], oversampling: DVec2::ONE, error: 0.0 };
         let frame = Frame::full(640, 480);
         let whole = Nodes::new(&lattice, DVec2::new(5.0, 4.0), frame, frame.window);
         let tile = Window { x: 200, y: 113, width: 77, height: 64 };

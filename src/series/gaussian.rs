@@ -39,7 +39,7 @@ impl Shape for Gaussian {
         if size < NARROWEST {
             return (0..=highest).map(|n| libm::erfc(SQRT_2 * PI * f64::from(n) * size)).collect();
         }
-        let last = ((NEGLIGIBLE / size).ceil() as u32).max(highest + 1);
+        let last = highest + (NEGLIGIBLE / size).ceil() as u32;
         let mut tails = vec![0.0; highest as usize + 1];
         let mut sum = 0.0;
         for n in (1..=last).rev() {

@@ -118,8 +118,7 @@ mod tests {
             for size in [0.02, 0.1, 0.4] {
                 assert!((shape.coefficient(0, size) - shape.integral() * size).abs() < 1e-12, "{bell}: the mean");
                 for n in [0, 1, 2, 5, 9, 20] {
-                    let (closed, quadrature) =
-                        (shape.coefficient(n, size), coefficient_by_quadrature(shape, n, size));
+                    let (closed, quadrature) = (shape.coefficient(n, size), coefficient_by_quadrature(shape, n, size));
                     assert!((closed - quadrature).abs() < 1e-14, "{bell} α_{n} at {size}: {closed} {quadrature}");
                 }
             }
@@ -136,7 +135,7 @@ mod tests {
                     let truth: f64 = (highest + 1..4000).map(|n| 2.0 * shape.coefficient(n, size)).sum();
                     let bound = tails[highest as usize];
                     assert!(bound >= truth * (1.0 - 1e-12), "{bell} tail at {highest}, {size}: {bound} {truth}");
-                    assert!(bound <= truth * 1.01 + 1e-15, "{bell} tail at {highest}, {size} is loose: {bound} {truth}");
+                    assert!(bound <= truth * 1.01 + 1e-15, "{bell} tail {highest} at {size} is loose: {bound} {truth}");
                 }
                 for distance in [0.3, 0.5, 0.8, 0.99] {
                     let others = (-40..=40).filter(|&j| j != 0).map(|j| shape.factor((distance - f64::from(j)) / size));

@@ -128,7 +128,8 @@ fn create_context(egl: &egl::Egl, display: EGLDisplay) -> Result<EGLContext, Str
         (egl::CONTEXT_OPENGL_PROFILE_MASK, egl::CONTEXT_OPENGL_CORE_PROFILE_BIT),
         (egl::NONE, egl::NONE),
     ];
-    let attributes: Vec<EGLint> = attributes.iter().flat_map(|&(key, value)| [key as EGLint, value as EGLint]).collect();
+    let attributes: Vec<EGLint> =
+        attributes.iter().flat_map(|&(key, value)| [key as EGLint, value as EGLint]).collect();
     let context = unsafe { egl.CreateContext(display, config, egl::NO_CONTEXT, attributes.as_ptr()) };
     if context == egl::NO_CONTEXT { Err("no core context of OpenGL 4.3".into()) } else { Ok(context) }
 }
