@@ -123,13 +123,15 @@ impl Photo {
         Self { frame, pixels, source: Source::plain() }
     }
 
-    /// Another picture in the same frame and with the same source: what a file of it would keep beside the pixels.
+    /// Another picture in the same frame and of the same primaries, which comes from no file: scene-linear, without
+    /// alpha, and with nothing else of what this photo's file held.
     ///
     /// # Panics
     /// If there are not as many pixels as the window holds.
-    pub fn with_pixels(&self, pixels: Vec<[f32; 4]>) -> Self {
+    pub fn companion(&self, pixels: Vec<[f32; 4]>) -> Self {
         assert_eq!(pixels.len(), self.frame.window.pixels(), "a photo needs as many pixels as its window");
-        Self { frame: self.frame, pixels, source: self.source.clone() }
+        let source = Source { primaries: self.source.primaries, ..Source::plain() };
+        Self { frame: self.frame, pixels, source }
     }
 
     /// Columns of the picture.

@@ -162,7 +162,12 @@ pub fn plan(ghosts: &[Ghost], request: &Request) -> Result<Plan> {
         return Err(Error::Plan(format!("a tolerance of {} is not between 0 and 1", request.tolerance)));
     }
     let weighed = weigh::weigh(ghosts, request);
-    let wanted = |evaluator| request.evaluator.is_none_or(|only| only == evaluator);
+    // A period or a degree asks for a series.
+    let series = request.period.is_some() || request.degree.is_some();
+    let wanted = |evaluator| match request.evaluator {
+        Some(only) => only == evaluator,
+        None => !(series && evaluator == Evaluator::Direct),
+    };
     let mut candidates = Vec::new();
     let mut refusals = Vec::new();
     for evaluator in Evaluator::ALL.into_iter().filter(|&evaluator| wanted(evaluator)) {

@@ -1,4 +1,5 @@
 //! The promises, one module each.
 
+mod cli;
 mod photo;
 mod scene;

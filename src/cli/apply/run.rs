@@ -102,7 +102,11 @@ impl Run<'_> {
         let outputs = &self.args.output_options;
         photo::check_target(&self.args.output, photo, &self.picture_options())?;
         if let Some(path) = &outputs.glare {
-            photo::check_target(path, photo, &self.glare_options())?;
+            photo::check_target(
+                path,
+                &photo.companion(vec![[0.0; 4]; photo.frame.window.pixels()]),
+                &self.glare_options(),
+            )?;
         }
         if let Some(path) = &outputs.report {
             target::check(path, self.args.force)?;
@@ -178,7 +182,7 @@ impl Run<'_> {
         let args = self.args;
         self.stage("write", |run| {
             if let (Some(path), Some(pixels)) = (&args.output_options.glare, glare) {
-                photo::write(path, &photo.with_pixels(pixels), &run.glare_options())?;
+                photo::write(path, &photo.companion(pixels), &run.glare_options())?;
             }
             photo::write(&args.output, photo, &run.picture_options())
         })

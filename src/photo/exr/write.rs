@@ -7,12 +7,15 @@ use exr::block::{self, BlockIndex, UncompressedBlock};
 use exr::compression::Compression;
 use exr::error::UnitResult;
 use exr::math::Vec2;
-use exr::meta::attribute::{ChannelDescription, ChannelList, IntegerBounds, LineOrder, SampleType, Text};
+use exr::meta::attribute::{
+    ChannelDescription, ChannelList, Chromaticities, IntegerBounds, LineOrder, SampleType, Text,
+};
 use exr::meta::header::{Header, ImageAttributes, LayerAttributes};
 use exr::meta::{BlockDescription, Headers, MetaData};
+use glam::DVec2;
 use rayon::prelude::*;
 
-use super::super::{Alpha, Depth, Photo, Reason, display};
+use super::super::{Alpha, Depth, Photo, Primaries, Reason, display};
 use super::Rest;
 use super::layer::Role;
 use super::lines::Scratch;
@@ -78,11 +81,18 @@ fn plain_header(photo: &Photo) -> Header {
     let (frame, window) = (photo.frame, photo.frame.window);
     let size = Vec2(window.width as usize, window.height as usize);
     let bounds = IntegerBounds::new((0, 0), (frame.width as usize, frame.height as usize));
+    let chromaticities = photo.source.primaries.map(chromaticities);
     let place = LayerAttributes { layer_position: Vec2(window.x, window.y), ..LayerAttributes::default() };
     Header::new(Text::from("picture"), size, Default::default())
         .with_encoding(Compression::ZIP16, BlockDescription::ScanLines, LineOrder::Increasing)
         .with_attributes(place)
-        .with_shared_attributes(ImageAttributes::new(bounds))
+        .with_shared_attributes(ImageAttributes { chromaticities, ..ImageAttributes::new(bounds) })
+}
+
+fn chromaticities(primaries: Primaries) -> Chromaticities {
+    let point = |p: DVec2| Vec2(p.x as f32, p.y as f32);
+    let Primaries { red, green, blue, white } = primaries;
+    Chromaticities { red: point(red), green: point(green), blue: point(blue), white: point(white) }
 }
 
 fn without_loss(header: Header) -> Header {

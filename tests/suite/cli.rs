@@ -1,0 +1,105 @@
+//! The program as a user runs it: what it writes, what it says, what it exits with.
+
+mod bad_input;
+mod outputs;
+mod refusals;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use tempfile::TempDir;
+use vglare::photo::{self, Photo, WriteOptions};
+
+/// A folder of its own for each test.
+struct Workplace {
+    folder: TempDir,
+}
+
+impl Workplace {
+    fn new() -> Self {
+        Self { folder: TempDir::new().expect("a temporary folder") }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// A small night scene: a lamp upper right, a weaker one lower left, a dim gradient.
+    fn photo(&self, name: &str) -> PathBuf {
+        self.write(name, &night())
+    }
+
+    fn write(&self, name: &str, photo: &Photo) -> PathBuf {
+        let path = self.path(name);
+        photo::write(&path, photo, &WriteOptions { overwrite: true, ..WriteOptions::default() }).expect("a photo");
+        path
+    }
+
+    fn text(&self, name: &str, text: &str) -> PathBuf {
+        let path = self.path(name);
+        std::fs::write(&path, text).expect("a file");
+        path
+    }
+
+    /// Runs the program in this folder.
+    fn vglare(&self, args: &[&str]) -> Ran {
+        let program = Path::new(env!("CARGO_BIN_EXE_vglare"));
+        Ran(Command::new(program).args(args).current_dir(self.folder.path()).output().expect("the program runs"))
+    }
+
+    /// The names of all files.
+    fn files(&self) -> Vec<String> {
+        let entries = std::fs::read_dir(self.folder.path()).expect("the folder");
+        let mut names: Vec<_> =
+            entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+        names.sort();
+        names
+    }
+}
+
+/// What the program did.
+struct Ran(Output);
+
+impl Ran {
+    fn code(&self) -> Option<i32> {
+        self.0.status.code()
+    }
+
+    fn stdout(&self) -> String {
+        String::from_utf8_lossy(&self.0.stdout).into_owned()
+    }
+
+    fn stderr(&self) -> String {
+        String::from_utf8_lossy(&self.0.stderr).into_owned()
+    }
+
+    #[track_caller]
+    fn succeeded(self) -> Self {
+        assert_eq!(self.code(), Some(0), "{}{}", self.stdout(), self.stderr());
+        self
+    }
+
+    /// Failed with this code, in words, and without a panic.
+    #[track_caller]
+    fn failed(self, code: i32, words: &[&str]) -> Self {
+        let said = self.stderr();
+        assert_eq!(self.code(), Some(code), "{said}");
+        for word in words {
+            assert!(said.contains(word), "{word:?} is not in: {said}");
+        }
+        assert!(!said.contains("panicked"), "{said}");
+        self
+    }
+}
+
+fn night() -> Photo {
+    let (width, height) = (96, 64);
+    let mut pixels: Vec<[f32; 4]> =
+        (0..width * height).map(|k| [0.02, 0.02 + 1e-4 * (k % width) as f32, 0.03, 1.0]).collect();
+    for (column, row, light) in
+        [(70, 12, [900.0, 700.0, 400.0]), (71, 12, [800.0, 650.0, 300.0]), (20, 50, [60.0, 90.0, 200.0])]
+    {
+        pixels[row * width + column] = [light[0], light[1], light[2], 1.0];
+    }
+    Photo::new(width as u32, height as u32, pixels)
+}

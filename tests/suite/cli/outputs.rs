@@ -1,0 +1,174 @@
+//! What a run leaves behind.
+
+use std::path::Path;
+
+use serde_json::Value;
+use vglare::photo;
+
+use super::{Workplace, night};
+
+fn bits(path: &Path) -> Vec<[u32; 4]> {
+    photo::read(path).expect("a photo").pixels.iter().map(|pixel| pixel.map(f32::to_bits)).collect()
+}
+
+#[test]
+fn every_format_can_be_written() {
+    let place = Workplace::new();
+    place.photo("in.exr");
+    for name in ["out.exr", "out.hdr", "out.pfm", "out.tif", "out.png", "out.jpg"] {
+        let ran = place.vglare(&["apply", "in.exr", "-o", name]).succeeded();
+        assert!(ran.stdout().contains(name), "the summary says where: {}", ran.stdout());
+        let picture = photo::read(&place.path(name)).expect("what was written can be read");
+        assert_eq!((picture.width(), picture.height()), (96, 64), "{name}");
+        // The glare reaches what was dark before, and most of all near the brightest lamp.
+        let luminance = |column: usize, row: usize| picture.pixels[row * 96 + column][1];
+        assert!(luminance(74, 14) > 2.0 * luminance(2, 62), "{name}: the veil is brightest near the lamp");
+    }
+}
+
+#[test]
+fn strength_0_returns_the_photo_bit_for_bit() {
+    let place = Workplace::new();
+    let mut photo = night();
+    photo.pixels[100] = [f32::NAN, f32::NEG_INFINITY, -3.5, 1.0];
+    for name in ["in.exr", "in.pfm", "in.tif"] {
+        let input = place.write(name, &photo);
+        let output = format!("out-{name}");
+        place.vglare(&["apply", name, "-o", &output, "--strength", "0"]).succeeded();
+        assert!(bits(&input) == bits(&place.path(&output)), "{name} changed");
+    }
+}
+
+#[test]
+fn one_bad_pixel_harms_one_pixel() {
+    let place = Workplace::new();
+    place.photo("good.exr");
+    for (name, value) in [("nan", f32::NAN), ("inf", f32::INFINITY), ("minus-inf", f32::NEG_INFINITY)] {
+        let mut photo = night();
+        photo.pixels[30 * 96 + 40][1] = value;
+        place.write("bad.exr", &photo);
+        place.vglare(&["apply", "good.exr", "-o", "good-out.exr", "--force"]).succeeded();
+        let ran = place.vglare(&["apply", "bad.exr", "-o", "bad-out.exr", "--force"]).succeeded();
+        assert!(ran.stdout().contains("column 40, row 30"), "{name} is told: {}", ran.stdout());
+        let (good, bad) = (bits(&place.path("good-out.exr")), bits(&place.path("bad-out.exr")));
+        let changed: Vec<_> = (0..good.len()).filter(|&k| good[k] != bad[k]).collect();
+        assert_eq!(changed, [30 * 96 + 40], "{name}");
+    }
+}
+
+#[test]
+fn the_report_says_what_was_done() {
+    let place = Workplace::new();
+    place.photo("in.exr");
+    place.vglare(&["apply", "in.exr", "-o", "out.exr", "--report", "report.json", "--glare", "glare.exr"]).succeeded();
+    let text = std::fs::read_to_string(place.path("report.json")).expect("a report");
+    let report: Value = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(report["input"]["picture"], serde_json::json!([96, 64]));
+    assert_eq!(report["scene"]["lights"].as_array().map(Vec::len), Some(2), "{text}");
+    let ghosts = report["scene"]["ghosts"].as_u64().expect("a count");
+    let planned: u64 = report["plan"]["groups"]
+        .as_array()
+        .expect("groups")
+        .iter()
+        .map(|g| g["ghosts"].as_u64().expect("a count"))
+        .sum();
+    assert_eq!(ghosts, planned + report["plan"]["dropped"].as_u64().expect("a count"), "{text}");
+    for path in ["/plan/period", "/plan/degree", "/plan/terms", "/plan/evaluator", "/renderer/renderer", "/vglare"] {
+        assert!(report.pointer(path).is_some_and(|value| !value.is_null()), "{path} of {text}");
+    }
+    let error = |name: &str| report["error"][name].as_f64().expect("a number");
+    assert!(error("measured") <= error("predicted") && error("predicted") <= error("asked"), "{text}");
+    assert!(
+        report["passes"].as_array().is_some_and(|passes| passes.iter().any(|p| p["pass"] == "composite")),
+        "{text}"
+    );
+}
+
+#[test]
+fn the_glare_alone_is_what_was_added() {
+    let place = Workplace::new();
+    let photo = night();
+    place.write("in.exr", &photo);
+    place.vglare(&["apply", "in.exr", "-o", "out.exr", "--glare", "glare.exr", "--strength", "0.7"]).succeeded();
+    let (out, glare) = (photo::read(&place.path("out.exr")).unwrap(), photo::read(&place.path("glare.exr")).unwrap());
+    for ((before, after), added) in photo.pixels.iter().zip(&out.pixels).zip(&glare.pixels) {
+        for colour in 0..3 {
+            let sum = before[colour] + added[colour];
+            assert!((after[colour] - sum).abs() <= 1e-6 * sum, "{before:?} + {added:?} = {after:?}");
+        }
+    }
+}
+
+#[test]
+fn energy_is_taken_from_the_lights() {
+    let place = Workplace::new();
+    let photo = night();
+    place.write("in.exr", &photo);
+    place.vglare(&["apply", "in.exr", "-o", "out.exr", "--mix", "energy", "--threshold", "10"]).succeeded();
+    let out = photo::read(&place.path("out.exr")).unwrap();
+    let at = 12 * 96 + 70;
+    assert!(out.pixels[at][0] < photo.pixels[at][0], "the lamp is weaker by what it scatters");
+    let dark = 12 * 96 + 60;
+    assert!(out.pixels[dark][0] > photo.pixels[dark][0], "what is no light keeps its own and gains glare");
+}
+
+#[test]
+fn egl_and_osmesa_agree() {
+    let place = Workplace::new();
+    place.photo("in.exr");
+    for backend in ["egl", "osmesa"] {
+        place.vglare(&["apply", "in.exr", "-o", &format!("{backend}.exr"), "--backend", backend]).succeeded();
+    }
+    let (egl, osmesa) = (photo::read(&place.path("egl.exr")).unwrap(), photo::read(&place.path("osmesa.exr")).unwrap());
+    for (a, b) in egl.pixels.as_flattened().iter().zip(osmesa.pixels.as_flattened()) {
+        assert!((a - b).abs() <= 1e-5 * a.abs().max(1e-3), "{a} {b}");
+    }
+}
+
+#[test]
+fn found_lights_can_be_edited_and_used_again() {
+    let place = Workplace::new();
+    place.photo("in.exr");
+    let listed = place.vglare(&["lights", "in.exr", "--json"]).succeeded().stdout();
+    place.text("lights.json", &listed);
+    place.vglare(&["apply", "in.exr", "-o", "found.exr"]).succeeded();
+    place.vglare(&["apply", "in.exr", "-o", "listed.exr", "--lights", "lights.json"]).succeeded();
+    assert!(bits(&place.path("found.exr")) == bits(&place.path("listed.exr")));
+}
+
+#[test]
+fn a_preset_can_be_taken_as_a_file_of_ones_own() {
+    let place = Workplace::new();
+    place.photo("in.exr");
+    let lens = place.vglare(&["presets", "anamorphic"]).succeeded().stdout();
+    place.text("mine.toml", &lens);
+    place.vglare(&["apply", "in.exr", "-o", "named.exr", "--preset", "anamorphic"]).succeeded();
+    place.vglare(&["apply", "in.exr", "-o", "mine.exr", "--lens", "mine.toml"]).succeeded();
+    assert!(bits(&place.path("named.exr")) == bits(&place.path("mine.exr")));
+}
+
+#[test]
+fn the_shell_and_the_manual_are_served() {
+    let place = Workplace::new();
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        assert!(place.vglare(&["completions", shell]).succeeded().stdout().contains("apply"), "{shell}");
+    }
+    assert!(place.vglare(&["man"]).succeeded().stdout().contains(".TH"));
+    place.vglare(&["man", "--folder", "man"]).succeeded();
+    assert!(place.path("man/vglare-apply.1").is_file());
+    let help = place.vglare(&["apply", "--help"]).succeeded().stdout();
+    assert!(help.contains("Examples:") && help.contains("--tolerance"), "{help}");
+}
+
+#[test]
+fn info_tells_of_both_backends() {
+    let place = Workplace::new();
+    let text = place.vglare(&["info", "--json"]).succeeded().stdout();
+    let info: Value = serde_json::from_str(&text).expect("JSON");
+    let backends = info["backends"].as_array().expect("a list");
+    assert_eq!(backends.len(), 2);
+    for backend in backends {
+        assert_eq!(backend["works"], true, "{text}");
+        assert!(backend["info"]["limits"]["texture_size"].as_u64() >= Some(16384), "{text}");
+    }
+}
