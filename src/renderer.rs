@@ -121,6 +121,7 @@ impl Renderer {
                 .collect();
             self.spectrum.compute(&self.runner, &plan.counts, &groups)?;
         }
+        self.runner.device().check("computing the spectrum")?;
         self.scene = Some((ghosts.to_vec(), plan.clone()));
         Ok(())
     }
@@ -140,6 +141,7 @@ impl Renderer {
             self.runner.run("upload", || photo.write(&pixels[at..], stride, tile.width, tile.height));
             let picture = self.composite.draw(&self.runner, variant(source, settings), &uniforms)?;
             self.runner.run("readback", || picture.read(&mut pixels[at..], stride, tile.width, tile.height));
+            self.runner.device().check("compositing")?;
         }
         Ok(())
     }
@@ -201,6 +203,7 @@ impl Renderer {
             let glare = self.composite.draw_glare(&self.runner, variant(source, settings), &uniforms, size)?;
             let at = offset(frame.window, tile);
             self.runner.run("readback", || glare.read(&mut pixels[at..], stride, tile.width, tile.height));
+            self.runner.device().check("drawing the glare")?;
         }
         Ok(pixels)
     }
@@ -236,6 +239,7 @@ impl Renderer {
             for (&index, value) in mine.iter().zip(self.field.probe(&self.runner, source, &local)?) {
                 values[index] = [0, 1, 2].map(|colour| f64::from(value[colour]) * scale[colour]);
             }
+            self.runner.device().check("looking up the field")?;
         }
         Ok(values)
     }
@@ -262,7 +266,12 @@ impl Renderer {
     fn tiles(&self, window: Window) -> Vec<Window> {
         let limits = &self.runner.device().info().limits;
         let side = limits.texture_size.min(limits.viewport[0]).min(limits.viewport[1]);
-        tiles::split(window, side, self.tile_pixels)
+        // Drivers reset themselves when one draw takes seconds, and `direct` can make that of a tile of any size.
+        let bells = match &self.scene {
+            Some((_, plan)) if plan.evaluator == Evaluator::Direct => plan.ghosts().max(1),
+            _ => 1,
+        };
+        tiles::split(window, side, self.tile_pixels.min((tiles::BELLS / bells).max(1)))
     }
 
     /// Finds the range where the settings ask for it, and gives the composite's uniforms.

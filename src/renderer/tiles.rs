@@ -14,6 +14,9 @@ use crate::series::phase;
 /// The largest tile: 4 Mpx, 64 MiB for each texture of RGBA f32.
 pub(super) const PIXELS: usize = 4 << 20;
 
+/// Bells that one draw may evaluate.
+pub(super) const BELLS: usize = 20_000_000_000;
+
 /// Splits a window into tiles of at most `side` pixels a side and `pixels` in all; whole rows where possible.
 pub(super) fn split(window: Window, side: u32, pixels: usize) -> Vec<Window> {
     let width = window.width.min(side).min(u32::try_from(pixels).unwrap_or(u32::MAX)).max(1);

@@ -142,6 +142,21 @@ impl Device {
         &self.info
     }
 
+    /// An error where the driver has one to tell since it was last asked; running out of memory, above all.
+    ///
+    /// # Errors
+    /// [`Error::Gl`], which names `work`.
+    pub fn check(&self, work: &str) -> Result<()> {
+        let name = match unsafe { self.gl.get_error() } {
+            glow::NO_ERROR => return Ok(()),
+            glow::OUT_OF_MEMORY => "out of memory".to_owned(),
+            glow::INVALID_OPERATION => "invalid operation".to_owned(),
+            glow::INVALID_VALUE => "invalid value".to_owned(),
+            other => format!("error {other:#x}"),
+        };
+        Err(Error::Gl(format!("{name} while {work}")))
+    }
+
     /// Waits until the GL has done all that it was asked to.
     pub fn finish(&self) {
         unsafe { self.gl.finish() }
