@@ -37,6 +37,10 @@ pub enum Error {
     #[error("no plan: {0}")]
     Plan(String),
 
+    /// The bench missed a bar, and was asked to hold them all.
+    #[error("missed:\n  {}", missed.join("\n  "))]
+    Missed { missed: Vec<String> },
+
     /// No backend gives OpenGL 4.3.
     #[error("no OpenGL 4.3 context could be had\n  {}", reasons.join("\n  "))]
     NoContext { reasons: Vec<String> },

@@ -17,11 +17,15 @@
 //! | [`renderer`] | the main path: spectrum → field → normalise → composite |
 //! | [`mod@reference`] | the definition of the field in f64, by direct sum and by direct series |
 //! | [`compare`] | the one error metric |
+//! | [`measure`] | arms timed in turns, and their ratios |
+//! | [`cli`] | the commands |
 
+pub mod cli;
 pub mod compare;
 pub mod error;
 pub mod frame;
 pub mod gpu;
+pub mod measure;
 pub mod photo;
 pub mod plan;
 pub mod reference;
