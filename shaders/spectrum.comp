@@ -38,16 +38,16 @@ vec2 factor(uint harmonic, uint phase, float size) {
     return bell_coefficient(float(harmonic), size) * cis(harmonic * phase);
 }
 
-void prepare(uint first) {
+void prepare(uint first, uint last) {
     for (uint entry = gl_LocalInvocationIndex; entry < BATCH * TILE; entry += TILE * TILE) {
         uint k = first + entry / TILE;
         uint lane = entry % TILE;
-        // Past the last ghost the weight is zero, so these factors only have to be finite.
+        // Past the slice's last ghost the weight is zero, so these factors only have to be finite.
         Ghost ghost = ghosts[min(k, ghost_count - 1u)];
         factors_x[entry] = factor(gl_WorkGroupID.x * TILE + lane, ghost.phase.x, ghost.size.x);
         factors_y[entry] = factor(gl_WorkGroupID.y * TILE + lane, ghost.phase.y, ghost.size.y);
         if (lane == 0u) {
-            weights[entry / TILE] = k < ghost_count ? ghost.weight.rgb : vec3(0.0);
+            weights[entry / TILE] = k < last ? ghost.weight.rgb : vec3(0.0);
         }
     }
 }
@@ -57,7 +57,7 @@ void main() {
     uint last = min(first + slice_length, ghost_count);
     vec4 red = vec4(0.0), green = vec4(0.0), blue = vec4(0.0);
     for (uint base = first; base < last; base += BATCH) {
-        prepare(base);
+        prepare(base, last);
         barrier();
         vec4 batch_red = vec4(0.0), batch_green = vec4(0.0), batch_blue = vec4(0.0);
         for (uint g = 0u; g < BATCH; ++g) {

@@ -108,7 +108,7 @@ impl Renderer {
         }
         self.scene = None;
         if plan.evaluator == Evaluator::Direct {
-            self.evaluators.set_ghosts(&direct_ghosts(ghosts, plan))?;
+            self.evaluators.set_ghosts(&self.runner, &direct_ghosts(ghosts, plan))?;
         } else {
             let spectral: Vec<_> =
                 plan.groups.iter().map(|group| spectral_ghosts(ghosts, plan, &group.members)).collect();

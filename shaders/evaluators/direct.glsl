@@ -1,6 +1,8 @@
 // `direct`: the bells themselves, summed at every pixel (rex's non-parametric case). The cost of a pixel grows with K.
 #include BELL
 
+const uint STEP = 8u;
+
 struct Ghost {
     vec2 center;
     vec2 inverse_size;
@@ -12,7 +14,7 @@ layout(std430, binding = BINDING_GHOSTS) readonly buffer Ghosts {
 layout(std140, binding = 1) uniform Direct {
     ivec2 corner;   // of the tile, in pixels of the picture
     ivec2 size;     // of the picture, in pixels
-    uint ghost_count;
+    uint ghost_count; // a multiple of STEP: the last ones may have no weight
 };
 
 vec3 glare(ivec2 pixel) {
@@ -23,9 +25,13 @@ vec3 glare(ivec2 pixel) {
     for (uint base = 0u; base < ghost_count; base += 64u) {
         vec3 batch = vec3(0.0);
         uint last = min(base + 64u, ghost_count);
-        for (uint k = base; k < last; ++k) {
-            Ghost ghost = ghosts[k];
-            batch += ghost.weight.rgb * bell_value((position - ghost.center) * ghost.inverse_size);
+        for (uint first = base; first < last; first += STEP) {
+            // A fixed number of rounds, which compilers unroll: Mesa's software renderer ends every loop once a pixel
+            // has gone through 65535 rounds in all.
+            for (uint k = 0u; k < STEP; ++k) {
+                Ghost ghost = ghosts[first + k];
+                batch += ghost.weight.rgb * bell_value((position - ghost.center) * ghost.inverse_size);
+            }
         }
         sum += batch;
     }

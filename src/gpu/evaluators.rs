@@ -1,6 +1,8 @@
 //! The four ways to the field. Each readies what its GLSL function `glare(pixel)` reads for one tile of the picture;
 //! `field`, `composite` and `probe` then include that function.
 
+use bytemuck::Zeroable as _;
+
 use super::harmonics::Harmonics;
 use super::layout::{
     CELLS, DirectGhost, GHOSTS, HARMONICS_X, HARMONICS_Y, KNOTS_X, KNOTS_Y, Knot, LATTICE, PROFILES, STRIPS,
@@ -8,7 +10,14 @@ use super::layout::{
 use super::resource::{Buffer, Scratch, Texel};
 use super::runner::Runner;
 use super::spectrum::Spectrum;
-use crate::Result;
+use crate::{Error, Result};
+
+/// `direct` sums this many ghosts in a round of its loop; as in `evaluators/direct.glsl`.
+const STEP: usize = 8;
+
+/// Rounds of a loop that Mesa's software renderer runs for one pixel, all loops taken together; then it ends them
+/// without a word. Drivers of real GPUs have no such limit.
+const MOST_ROUNDS: usize = 65535;
 
 /// The uniform block that `direct` has beside its pass's own; as in `evaluators/direct.glsl`.
 const DIRECT: super::layout::Binding = ("", 1);
@@ -57,9 +66,17 @@ impl Evaluators {
     }
 
     /// Uploads the ghosts that `direct` sums.
-    pub fn set_ghosts(&mut self, ghosts: &[DirectGhost]) -> Result<()> {
-        self.ghost_count = ghosts.len();
-        self.ghosts.store(ghosts)
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where they are more than the software renderer goes through for one pixel.
+    pub fn set_ghosts(&mut self, runner: &Runner, ghosts: &[DirectGhost]) -> Result<()> {
+        // Ghosts without weight fill the last round.
+        let mut padded = ghosts.to_vec();
+        padded.resize(ghosts.len().next_multiple_of(STEP), DirectGhost::zeroed());
+        let rounds = padded.len() / STEP + padded.len().div_ceil(64);
+        within_rounds(runner, rounds, "direct", ghosts.len(), "ghosts")?;
+        self.ghost_count = padded.len();
+        self.ghosts.store(&padded)
     }
 
     /// Readies `direct` for a tile whose first pixel is `corner` in a picture of `size` pixels.
@@ -71,8 +88,12 @@ impl Evaluators {
     }
 
     /// Readies `series` for pixels at these phases of columns and rows, in 2⁻³² of a period.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where there are more terms than the software renderer goes through for one pixel.
     pub fn series(&mut self, runner: &Runner, phases: [&[u32]; 2], spectrum: &Spectrum) -> Result<()> {
         let degree = spectrum.degree();
+        within_rounds(runner, spectrum.terms() + degree[0] as usize + 1, "series", spectrum.terms(), "terms")?;
         spectrum.bind();
         self.harmonics_x.fill(runner, phases[0], degree[0], None)?;
         self.harmonics_y.fill(runner, phases[1], degree[1], None)
@@ -125,4 +146,15 @@ impl Evaluators {
         profiles.bind(PROFILES);
         self.harmonics_x.fill(runner, phases[0], degree[0], steps[0])
     }
+}
+
+/// Refuses a loop that the software renderer would end too early: a wrong picture without any error.
+fn within_rounds(runner: &Runner, rounds: usize, evaluator: &str, count: usize, what: &str) -> Result<()> {
+    if runner.device().info().software && rounds > MOST_ROUNDS {
+        return Err(Error::Gl(format!(
+            "the software renderer cannot go through {count} {what} for each pixel, as `{evaluator}` would; \
+             `rows` and `grid` need not"
+        )));
+    }
+    Ok(())
 }

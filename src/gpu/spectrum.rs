@@ -9,6 +9,9 @@ use crate::Result;
 const TILE: u32 = 8;
 /// A slice is at least this many ghosts: fewer would cost more in summing slices than they win in parallel.
 const SHORTEST_SLICE: usize = 128;
+/// And at most this many: a longer one would need more rounds of its loops than Mesa's software renderer runs (65535;
+/// 37 for each 32 ghosts) before it ends them without a word.
+const LONGEST_SLICE: usize = 1 << 15;
 /// And there are at most this many slices.
 const MOST_SLICES: usize = 64;
 /// Room for the slices' sums, in vec4s: 32 MiB.
@@ -28,6 +31,7 @@ pub(crate) struct Spectrum {
     terms: Buffer<[f32; 4]>,
     offsets: Buffer<u32>,
     degree: [u32; 2],
+    term_count: usize,
     ghosts: Buffer<SpectralGhost>,
     partials: Buffer<[f32; 4]>,
     uniforms: Buffer<[u32; 4]>,
@@ -41,6 +45,7 @@ impl Spectrum {
             terms: Buffer::new(device, 0)?,
             offsets: Buffer::from_slice(device, &[0, 0])?,
             degree: [0; 2],
+            term_count: 0,
             ghosts: Buffer::new(device, 0)?,
             partials: Buffer::new(device, 0)?,
             uniforms: Buffer::new(device, 1)?,
@@ -56,19 +61,34 @@ impl Spectrum {
         }));
         let terms = *offsets.last().expect("begins with one") as usize;
         self.degree = [counts.len().max(1) as u32 - 1, counts.iter().max().map_or(0, |most| most.max(&1) - 1)];
+        self.term_count = terms;
         offsets.insert(0, counts.len() as u32);
         self.offsets.store(&offsets)?;
         self.terms.store(&vec![[0.0; 4]; 3 * terms])?;
-        for group in groups.iter().filter(|group| !group.ghosts.is_empty()) {
-            self.add(runner, group)?;
+        for group in groups {
+            let slices = Self::most_slices(group.degree);
+            for ghosts in group.ghosts.chunks(slices * LONGEST_SLICE) {
+                self.add(runner, &SpectrumGroup { ghosts, ..*group })?;
+            }
         }
         Ok(())
     }
 
+    /// How many slices' sums there is room for.
+    fn most_slices(degree: [u32; 2]) -> usize {
+        (PARTIALS_LIMIT / Self::vectors(degree)).clamp(1, MOST_SLICES)
+    }
+
+    /// How many vec4s the sums of one slice are.
+    fn vectors(degree: [u32; 2]) -> usize {
+        let tiles = degree.map(|degree| (degree + 1).div_ceil(TILE));
+        3 * (tiles[0] * tiles[1] * TILE * TILE) as usize
+    }
+
     fn add(&mut self, runner: &Runner, group: &SpectrumGroup<'_>) -> Result<()> {
         let tiles = group.degree.map(|degree| (degree + 1).div_ceil(TILE));
-        let vectors = 3 * (tiles[0] * tiles[1] * TILE * TILE) as usize;
-        let most = (PARTIALS_LIMIT / vectors).clamp(1, MOST_SLICES);
+        let vectors = Self::vectors(group.degree);
+        let most = Self::most_slices(group.degree);
         let slice_length = SHORTEST_SLICE.max(group.ghosts.len().div_ceil(most));
         let slices = group.ghosts.len().div_ceil(slice_length) as u32;
 
@@ -93,6 +113,11 @@ impl Spectrum {
     pub fn bind(&self) {
         self.terms.bind_storage(SPECTRUM);
         self.offsets.bind_storage(OFFSETS);
+    }
+
+    /// How many modes are kept.
+    pub fn terms(&self) -> usize {
+        self.term_count
     }
 
     /// Highest harmonics in x and y that are kept.
