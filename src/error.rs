@@ -33,6 +33,10 @@ pub enum Error {
     #[error("a tolerance of {asked:.1e} is below what 32-bit floats can give here: {floor:.1e}")]
     ToleranceBelowFloor { asked: f64, floor: f64 },
 
+    /// The rendered field is further from the truth than was asked.
+    #[error("the glare is off by {measured:.1e} of its largest value, and {asked:.1e} was asked")]
+    ToleranceMissed { asked: f64, measured: f64 },
+
     /// What was asked of the plan cannot be had.
     #[error("no plan: {0}")]
     Plan(String),
@@ -40,6 +44,10 @@ pub enum Error {
     /// The bench missed a bar, and was asked to hold them all.
     #[error("missed:\n  {}", missed.join("\n  "))]
     Missed { missed: Vec<String> },
+
+    /// Options that do not go together.
+    #[error("{0}")]
+    Usage(String),
 
     /// No backend gives OpenGL 4.3.
     #[error("no OpenGL 4.3 context could be had\n  {}", reasons.join("\n  "))]
@@ -51,6 +59,17 @@ pub enum Error {
 }
 
 impl Error {
+    /// What the program exits with: 1 in general, 2 where the command line asks for the impossible, 3 where the
+    /// tolerance cannot be or was not met, 4 where there is no OpenGL. (clap's own usage errors exit with 2 as well.)
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::UnknownPreset { .. } | Self::Usage(_) => 2,
+            Self::ToleranceBelowFloor { .. } | Self::ToleranceMissed { .. } | Self::Missed { .. } => 3,
+            Self::NoContext { .. } => 4,
+            _ => 1,
+        }
+    }
+
     /// A [`Error::ReadPhoto`] from anything that can say why.
     pub fn read_photo(path: &Path, reason: impl ToString) -> Self {
         Self::ReadPhoto { path: path.to_owned(), reason: reason.to_string() }

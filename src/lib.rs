@@ -16,10 +16,11 @@
 //! | [`gpu`] | the plan's tables and passes on OpenGL 4.3; the only folder with `unsafe` |
 //! | [`renderer`] | the main path: spectrum → field → normalise → composite |
 //! | [`mod@reference`] | the definition of the field in f64, by direct sum and by direct series |
-//! | [`compare`] | the one error metric |
+//! | [`compare`], [`certificate`] | the one error metric, and a rendered field held against the definition |
 //! | [`measure`] | arms timed in turns, and their ratios |
 //! | [`cli`] | the commands |
 
+pub mod certificate;
 pub mod cli;
 pub mod compare;
 pub mod error;

@@ -1,7 +1,6 @@
 //! `vglare bench`: what each pass costs here, as ratios that were measured in one run.
 
 mod cases;
-mod file;
 mod first;
 mod many;
 mod report;
@@ -11,12 +10,11 @@ mod stage;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use super::stdout;
-use crate::gpu::{Backend, Device};
+use super::{BackendChoice, stdout, target};
+use crate::gpu::Device;
 use crate::measure::Rounds;
 use crate::{Error, Result};
 
-use file::File;
 use report::Report;
 use stage::Stage;
 
@@ -30,8 +28,8 @@ use stage::Stage;
 #[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Where OpenGL comes from; auto takes the first that gives OpenGL 4.3
-    #[arg(long, value_enum, default_value_t = Choice::Auto)]
-    backend: Choice,
+    #[arg(long, value_enum, default_value_t = BackendChoice::Auto)]
+    backend: BackendChoice,
 
     /// The picture's size in pixels
     #[arg(long, value_name = "WxH", default_value = "1920x1080", value_parser = size)]
@@ -68,25 +66,6 @@ Examples:
   vglare bench --quick --backend osmesa     A quick look at Mesa's software renderer
   vglare bench --size 3840x2160 --csv 4k.csv";
 
-/// A backend, or whichever there is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Choice {
-    Auto,
-    Egl,
-    #[value(name = "osmesa")]
-    OsMesa,
-}
-
-impl Choice {
-    fn backends(self) -> &'static [Backend] {
-        match self {
-            Self::Auto => &Backend::ALL,
-            Self::Egl => &[Backend::Egl],
-            Self::OsMesa => &[Backend::OsMesa],
-        }
-    }
-}
-
 fn size(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once(['x', 'X']).map(|(width, height)| [width.parse(), height.parse()]);
     match sides {
@@ -102,14 +81,18 @@ fn size(text: &str) -> Result<[u32; 2], String> {
 /// [`Error::NoContext`] without OpenGL 4.3; [`Error::Exists`] and [`Error::Write`] where a file cannot be written;
 /// [`Error::Missed`] where a bar is missed and that was asked to be an error.
 pub fn run(args: &Args) -> Result<()> {
-    let files = [&args.csv, &args.json].map(|path| path.as_ref().map(|path| File::new(path, args.force)).transpose());
-    let [csv, json] = files;
-    let (csv, json) = (csv?, json?);
-
+    for path in args.csv.iter().chain(&args.json) {
+        target::check(path, args.force)?;
+    }
     let report = measure(args)?;
     stdout::print(|out| report.print(out))?;
-    csv.map_or(Ok(()), |file| file.write(|out| report.csv(out)))?;
-    json.map_or(Ok(()), |file| file.write(|out| report.json(out)))?;
+    if let Some(path) = &args.csv {
+        let text = report.csv().map_err(|reason| Error::write(path, reason))?;
+        target::write_text(path, &text, args.force)?;
+    }
+    if let Some(path) = &args.json {
+        target::write_json(path, &report, args.force)?;
+    }
     let missed = report.missed();
     if args.strict && !missed.is_empty() { Err(Error::Missed { missed }) } else { Ok(()) }
 }

@@ -1,6 +1,98 @@
 //! The commands, one file each.
 
-pub mod bench;
-pub mod lights;
-pub mod presets;
+mod apply;
+mod bench;
+mod info;
+mod lights;
+mod presets;
+mod progress;
+mod shell;
 mod stdout;
+mod target;
+
+use clap::{Parser, Subcommand};
+
+use crate::Result;
+
+/// Veiling glare for HDR photographs, to a stated tolerance
+///
+/// vglare finds the lights in a photo, turns each into the faint, wide ghosts that a lens makes of it, and lays them
+/// over the picture. It computes in scene-linear light on OpenGL 4.3, with or without a graphics card or a display.
+#[derive(Debug, Parser)]
+#[command(name = "vglare", version, arg_required_else_help = true, after_help = EXIT_CODES, max_term_width = 100)]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  done
+  1  a file could not be read or written, or the driver failed
+  2  the command line is wrong
+  3  the tolerance is below what 32-bit floats can give, or was missed under --strict, or a bench's bar was
+  4  there is no OpenGL 4.3
+
+`vglare COMMAND --help` says more of each command, with examples.";
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Apply(Box<apply::Args>),
+    Lights(lights::Args),
+    Presets(presets::Args),
+    Bench(bench::Args),
+    Info(info::Args),
+    Completions(shell::CompletionsArgs),
+    Man(shell::ManArgs),
+}
+
+/// Runs the command.
+///
+/// # Errors
+/// Those of the command; [`crate::Error::exit_code`] says what to exit with.
+pub fn run(cli: Cli) -> Result<()> {
+    match cli.command {
+        Command::Apply(args) => apply::run(&args),
+        Command::Lights(args) => lights::run(&args),
+        Command::Presets(args) => presets::run(&args),
+        Command::Bench(args) => bench::run(&args),
+        Command::Info(args) => info::run(&args),
+        Command::Completions(args) => shell::completions(&args),
+        Command::Man(args) => shell::man(&args),
+    }
+}
+
+/// `--backend`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum BackendChoice {
+    /// The first that gives OpenGL 4.3
+    Auto,
+    /// EGL, on a graphics card or Mesa's software renderer
+    Egl,
+    /// OSMesa, Mesa's software renderer in memory
+    #[value(name = "osmesa")]
+    OsMesa,
+}
+
+impl BackendChoice {
+    /// The backends to try, in order.
+    fn backends(self) -> &'static [crate::gpu::Backend] {
+        use crate::gpu::Backend;
+        match self {
+            Self::Auto => &Backend::ALL,
+            Self::Egl => &[Backend::Egl],
+            Self::OsMesa => &[Backend::OsMesa],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory as _;
+
+    #[test]
+    fn the_parser_is_sound() {
+        Cli::command().debug_assert();
+    }
+}

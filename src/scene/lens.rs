@@ -3,7 +3,6 @@
 use glam::DVec2;
 
 use super::{Ghost, LensGhost, Light};
-use crate::series::Bell;
 
 /// A lens: every light gets one ghost from each entry of its table.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,7 +40,8 @@ impl LensGhost {
     pub fn of(&self, light: &Light) -> Ghost {
         let extent = self.along * light.size;
         let size = DVec2::new(self.size.x.hypot(extent), self.size.y.hypot(extent));
-        let peak = self.share / volume(self.bell, size);
+        let volume = self.bell.shape().integral().powi(2) * size.element_product();
+        let peak = self.share / volume;
         Ghost {
             bell: self.bell,
             center: self.along * light.position,
@@ -51,16 +51,10 @@ impl LensGhost {
     }
 }
 
-/// The integral over the plane of a bell whose peak is 1.
-fn volume(bell: Bell, size: DVec2) -> f64 {
-    match bell {
-        Bell::Gaussian => std::f64::consts::TAU * size.x * size.y,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::series::Bell;
 
     fn lens_ghost(along: f64, size: DVec2) -> LensGhost {
         LensGhost { bell: Bell::Gaussian, along, size, tint: [1.0, 0.5, 0.0], share: 0.02 }

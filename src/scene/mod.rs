@@ -55,3 +55,11 @@ pub struct Ghost {
     /// Radiance at its centre, RGB.
     pub radiance: [f64; 3],
 }
+
+impl Ghost {
+    /// The ghost's flux, RGB: its integral over the plane.
+    pub fn flux(&self) -> [f64; 3] {
+        let volume = self.bell.shape().integral().powi(2) * self.size.element_product();
+        self.radiance.map(|radiance| radiance * volume)
+    }
+}

@@ -9,9 +9,6 @@ use super::stage::Pass;
 use crate::gpu::Info;
 use crate::measure::{Ratio, Rounds, Samples};
 
-/// Why a report could not be written.
-pub(super) type Reason = Box<dyn std::error::Error>;
-
 /// All that a run measured.
 #[derive(Serialize)]
 pub(super) struct Report {
@@ -194,8 +191,8 @@ impl Report {
     }
 
     /// The rows of all tables, one after the other.
-    pub fn csv(&self, out: &mut dyn Write) -> Result<(), Reason> {
-        let mut csv = csv::Writer::from_writer(out);
+    pub fn csv(&self) -> Result<String, Box<dyn std::error::Error>> {
+        let mut csv = csv::Writer::from_writer(Vec::new());
         for Table { title, yardstick, rows, .. } in &self.tables {
             for Row { what, wall_ms, least_ms, most_ms, gpu_ms, ratio } in rows {
                 csv.serialize(Line {
@@ -211,12 +208,7 @@ impl Report {
                 })?;
             }
         }
-        Ok(csv.flush()?)
-    }
-
-    pub fn json(&self, out: &mut dyn Write) -> Result<(), Reason> {
-        serde_json::to_writer_pretty(&mut *out, self)?;
-        Ok(writeln!(out)?)
+        Ok(String::from_utf8(csv.into_inner()?)?)
     }
 }
 
@@ -277,9 +269,7 @@ mod tests {
         report.table(table);
         report.bar("frame / copy", Target::AtMost(0.5), 1.0);
 
-        let mut csv = Vec::new();
-        report.csv(&mut csv).unwrap();
-        let csv = String::from_utf8(csv).unwrap();
+        let csv = report.csv().unwrap();
         let lines: Vec<_> = csv.lines().collect();
         assert_eq!(lines[1], "\"A frame, in parts\",copy,3.0,2.0,4.0,,,,");
         assert_eq!(lines[2], "\"A frame, in parts\",frame,3.0,2.0,4.0,,copy,1.0,1.0");

@@ -105,7 +105,7 @@ impl Device {
     pub fn open(backends: &[Backend]) -> Result<Rc<Self>> {
         let mut reasons = Vec::new();
         for &backend in backends {
-            match Self::open_one(backend) {
+            match Self::try_open(backend) {
                 Ok(device) => return Ok(Rc::new(device)),
                 Err(reason) => {
                     reasons.push(format!("{backend}: {reason} (on Debian: apt-get install {})", backend.packages()));
@@ -115,7 +115,11 @@ impl Device {
         Err(Error::NoContext { reasons })
     }
 
-    fn open_one(backend: Backend) -> Result<Self, String> {
+    /// Opens one backend and makes it current on this thread.
+    ///
+    /// # Errors
+    /// Why it does not work, in words.
+    pub fn try_open(backend: Backend) -> Result<Self, String> {
         let (gl, platform): (glow::Context, Box<dyn Platform>) = match backend {
             Backend::Egl => egl::open()?,
             Backend::OsMesa => osmesa::open()?,

@@ -1,0 +1,133 @@
+//! The error of a field that was rendered, measured against the direct sum in f64 at sample pixels.
+
+use crate::compare::compare;
+use crate::frame::Frame;
+use crate::plan::Plan;
+use crate::reference;
+use crate::renderer::Renderer;
+use crate::scene::Ghost;
+use crate::{Error, Result};
+
+/// Pixels that a certificate looks at, at least and at most.
+const FEWEST: usize = 32;
+const MOST: usize = 384;
+/// Bells that it may evaluate in f64: many ghosts get fewer pixels.
+const EFFORT: usize = 20_000_000;
+
+/// What was asked, what was predicted and what was measured; all relative to the field's largest value.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Certificate {
+    /// The tolerance.
+    pub asked: f64,
+    /// The plan's bound.
+    pub predicted: f64,
+    /// The largest error at the sample pixels, the worst colour.
+    pub measured: f64,
+    /// How many pixels were looked at.
+    pub pixels: usize,
+    /// The pixel with the largest error, as column and row of the picture.
+    pub worst_pixel: [i32; 2],
+    /// Values that are NaN or infinite.
+    pub not_finite: usize,
+}
+
+impl Certificate {
+    /// Measures the renderer's field, which must be that of `ghosts` and `plan`.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the driver refuses.
+    pub fn measure(renderer: &mut Renderer, ghosts: &[Ghost], plan: &Plan, frame: Frame, asked: f64) -> Result<Self> {
+        let pixels = sample_pixels(ghosts, plan, frame);
+        let points: Vec<_> = pixels.iter().map(|&[i, j]| frame.position(f64::from(i), f64::from(j))).collect();
+        let rendered = renderer.probe(frame, &pixels)?;
+        let difference = compare(&reference::direct_at(ghosts, &points), &rendered);
+        Ok(Self {
+            asked,
+            predicted: plan.predicted.total(),
+            measured: difference.relative,
+            pixels: pixels.len(),
+            worst_pixel: pixels.get(difference.worst.0).copied().unwrap_or_default(),
+            not_finite: difference.not_finite,
+        })
+    }
+
+    /// An error where the field is further from the truth than was asked.
+    ///
+    /// # Errors
+    /// [`Error::ToleranceMissed`].
+    pub fn check(&self) -> Result<()> {
+        // Written so that a NaN would be an error too.
+        if self.measured <= self.asked {
+            return Ok(());
+        }
+        Err(Error::ToleranceMissed { asked: self.asked, measured: self.measured })
+    }
+}
+
+/// Where to look: the corners and the middles of the borders, where the field was found largest, the ghosts' centres,
+/// and the rest spread evenly over the window.
+fn sample_pixels(ghosts: &[Ghost], plan: &Plan, frame: Frame) -> Vec<[i32; 2]> {
+    let window = frame.window;
+    let most = (EFFORT / ghosts.len().max(1)).clamp(FEWEST, MOST);
+    let (right, bottom) = (window.width as i32 - 1, window.height as i32 - 1);
+    let mut pixels: Vec<[i32; 2]> = [0, right / 2, right]
+        .iter()
+        .flat_map(|&i| [0, bottom / 2, bottom].map(|j| [window.x + i, window.y + j]))
+        .collect();
+    pixels.extend(&plan.peaks);
+    let stride = ghosts.len().div_ceil(most / 3).max(1);
+    let centers = ghosts.iter().step_by(stride).map(|ghost| frame.pixel(ghost.center));
+    let inside = centers
+        .map(|p| [p.x.round() as i32, p.y.round() as i32])
+        .filter(|&[i, j]| (window.x..=window.x + right).contains(&i) && (window.y..=window.y + bottom).contains(&j));
+    pixels.extend(inside);
+    pixels.truncate(2 * most / 3);
+    // The additive recurrence of the plastic number fills a square more evenly than chance does (Roberts, "The
+    // unreasonable effectiveness of quasirandom sequences", 2018).
+    const PLASTIC: f64 = 1.324_717_957_244_746;
+    let spread =
+        |index: usize, step: f64, last: i32| ((index as f64 * step + 0.5).fract() * f64::from(last + 1)) as i32;
+    pixels.extend((1..=most.saturating_sub(pixels.len())).map(|index| {
+        let (i, j) = (spread(index, 1.0 / PLASTIC, right), spread(index, PLASTIC.powi(-2), bottom));
+        [window.x + i.min(right), window.y + j.min(bottom)]
+    }));
+    pixels.sort_unstable();
+    pixels.dedup();
+    pixels
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Window;
+    use crate::plan::{Request, plan};
+
+    #[test]
+    fn samples_lie_in_the_window_and_hold_its_corners() {
+        let window = Window { x: -5, y: 7, width: 33, height: 12 };
+        let frame = Frame::full(40, 30).with_window(window);
+        let plan = plan(&[], &Request::new(frame, 1e-3)).unwrap();
+        let pixels = sample_pixels(&[], &plan, frame);
+        assert!(pixels.iter().all(|&[i, j]| (-5..28).contains(&i) && (7..19).contains(&j)), "{pixels:?}");
+        for corner in [[-5, 7], [27, 7], [-5, 18], [27, 18]] {
+            assert!(pixels.contains(&corner), "{corner:?} of {pixels:?}");
+        }
+        assert!(pixels.len() >= FEWEST, "{}", pixels.len());
+    }
+
+    #[test]
+    fn what_misses_the_tolerance_is_an_error_and_so_is_nan() {
+        let certificate = |measured| Certificate {
+            asked: 1e-3,
+            predicted: 5e-4,
+            measured,
+            pixels: 1,
+            worst_pixel: [0, 0],
+            not_finite: 0,
+        };
+        assert!(certificate(1e-3).check().is_ok());
+        assert!(certificate(1.001e-3).check().is_err());
+        assert!(certificate(f64::NAN).check().is_err());
+        assert!(certificate(f64::INFINITY).check().is_err());
+    }
+}

@@ -1,0 +1,138 @@
+//! The report: what was computed, how, how exactly and how fast.
+
+use serde::Serialize;
+
+use super::gather::Gathered;
+use super::run::Run;
+use crate::certificate::Certificate;
+use crate::gpu::{Info, PassTime};
+use crate::photo::{BadKind, BadPixels, Photo};
+use crate::plan::Plan;
+
+/// As JSON, one object.
+#[derive(Serialize)]
+pub struct Report<'a> {
+    vglare: &'static str,
+    input: PhotoReport,
+    output: String,
+    scene: SceneReport<'a>,
+    strength: f64,
+    normalize: crate::renderer::Normalize,
+    mix: super::Mix,
+    plan: Option<&'a Plan>,
+    error: Option<&'a Certificate>,
+    passes: &'a [PassTime],
+    milliseconds: Vec<Stage>,
+    renderer: Option<&'a Info>,
+}
+
+#[derive(Serialize)]
+struct PhotoReport {
+    file: String,
+    format: &'static str,
+    depth: &'static str,
+    picture: [u32; 2],
+    window: [i64; 4],
+    bad_pixels: BadReport,
+}
+
+/// How many pixels are no light, and where the first one is.
+#[derive(Serialize)]
+struct BadReport {
+    nan: usize,
+    infinite: usize,
+    negative: usize,
+    first: Option<FirstBad>,
+}
+
+#[derive(Serialize)]
+struct FirstBad {
+    column: i32,
+    row: i32,
+    kind: &'static str,
+}
+
+#[derive(Serialize)]
+struct SceneReport<'a> {
+    lens: Option<&'a str>,
+    threshold: Option<f64>,
+    regions: Option<usize>,
+    lights_dropped: Option<usize>,
+    lights: Vec<LightReport>,
+    ghosts: usize,
+}
+
+#[derive(Serialize)]
+struct LightReport {
+    position: [f64; 2],
+    flux: [f64; 3],
+    size: f64,
+}
+
+/// A stage of the run and how long it took.
+#[derive(Serialize)]
+pub struct Stage {
+    stage: &'static str,
+    wall_ms: f64,
+}
+
+impl<'a> Report<'a> {
+    pub fn new(run: &'a Run<'_>, photo: &Photo, bad: &BadPixels, scene: &'a Gathered) -> Self {
+        Self {
+            vglare: env!("CARGO_PKG_VERSION"),
+            input: photo_report(run, photo, bad),
+            output: run.args.output.display().to_string(),
+            scene: scene_report(scene),
+            strength: run.args.look.strength,
+            normalize: run.args.look.normalize,
+            mix: run.args.look.mix,
+            plan: run.plan.as_ref(),
+            error: run.certificate.as_ref(),
+            passes: &run.passes,
+            milliseconds: run.stages.iter().map(|&(stage, wall_ms)| Stage { stage, wall_ms }).collect(),
+            renderer: run.device.as_ref().map(|device| device.info()),
+        }
+    }
+}
+
+fn photo_report(run: &Run<'_>, photo: &Photo, bad: &BadPixels) -> PhotoReport {
+    let window = photo.frame.window;
+    PhotoReport {
+        file: run.args.input.display().to_string(),
+        format: photo.format_name(),
+        depth: photo.depth_name(),
+        picture: [photo.width(), photo.height()],
+        window: [window.x.into(), window.y.into(), window.width.into(), window.height.into()],
+        bad_pixels: BadReport {
+            nan: bad.nan,
+            infinite: bad.infinite,
+            negative: bad.negative,
+            first: bad.first.map(|(column, row, kind)| FirstBad { column, row, kind: kind_name(kind) }),
+        },
+    }
+}
+
+/// What is wrong with a pixel, in a word.
+pub fn kind_name(kind: BadKind) -> &'static str {
+    match kind {
+        BadKind::Nan => "NaN",
+        BadKind::Infinite => "infinite",
+        BadKind::Negative => "negative",
+    }
+}
+
+fn scene_report(scene: &Gathered) -> SceneReport<'_> {
+    let found = scene.found.as_ref();
+    SceneReport {
+        lens: scene.lens.as_ref().map(|lens| lens.name.as_str()),
+        threshold: found.map(|found| found.threshold),
+        regions: found.map(|found| found.regions),
+        lights_dropped: found.map(|found| found.dropped),
+        lights: scene
+            .lights
+            .iter()
+            .map(|light| LightReport { position: light.position.to_array(), flux: light.flux, size: light.size })
+            .collect(),
+        ghosts: scene.ghosts.len(),
+    }
+}

@@ -1,0 +1,123 @@
+//! What a person is told.
+
+use std::io::{self, Write};
+
+use super::gather::Gathered;
+use super::report::kind_name;
+use super::run::Run;
+use crate::Result;
+use crate::cli::stdout;
+use crate::photo::{BadPixels, Photo};
+use crate::plan::Plan;
+
+/// Warnings to standard error; unless quiet, a short summary to standard output.
+pub fn print(run: &Run<'_>, photo: &Photo, bad: &BadPixels, scene: &Gathered) -> Result<()> {
+    for warning in &run.warnings {
+        eprintln!("vglare: warning: {warning}");
+    }
+    if run.args.quiet {
+        return Ok(());
+    }
+    stdout::print(|out| {
+        about_photo(out, run, photo, bad)?;
+        about_scene(out, scene)?;
+        if let Some(plan) = &run.plan {
+            about_plan(out, run, plan)?;
+        }
+        if run.args.verbose {
+            about_times(out, run)?;
+        }
+        let total: f64 = run.stages.iter().map(|(_, ms)| ms).sum();
+        writeln!(out, "wrote    {} in {:.2} s", run.args.output.display(), total * 1e-3)
+    })
+}
+
+fn about_photo(out: &mut dyn Write, run: &Run<'_>, photo: &Photo, bad: &BadPixels) -> io::Result<()> {
+    let (width, height) = (photo.width(), photo.height());
+    let (format, depth) = (photo.format_name(), photo.depth_name());
+    writeln!(out, "photo    {}: {width} x {height}, {format}, {depth}", run.args.input.display())?;
+    if let Some((column, row, kind)) = bad.first {
+        writeln!(
+            out,
+            "         {} NaN, {} infinite, {} negative pixels; the first, {}, at column {column}, row {row}; \
+             none of them counts as light",
+            bad.nan,
+            bad.infinite,
+            bad.negative,
+            kind_name(kind)
+        )?;
+    }
+    Ok(())
+}
+
+fn about_scene(out: &mut dyn Write, scene: &Gathered) -> io::Result<()> {
+    if let (Some(found), Some(_)) = (&scene.found, &scene.lens) {
+        write!(out, "lights   {} at luminance {:.4} and above", scene.lights.len(), found.threshold)?;
+        match found.dropped {
+            0 => writeln!(out)?,
+            n => writeln!(out, "; {n} fainter ones left out, {:.1} % of the flux", 100.0 * found.dropped_share)?,
+        }
+    } else if !scene.lights.is_empty() {
+        writeln!(out, "lights   {}, as listed", scene.lights.len())?;
+    } else if scene.ghosts.is_empty() {
+        writeln!(out, "lights   none, so no glare")?;
+    }
+    match &scene.lens {
+        Some(lens) => writeln!(out, "lens     {}: {} ghosts in all", lens.name, scene.ghosts.len()),
+        None => writeln!(out, "ghosts   {}", scene.ghosts.len()),
+    }
+}
+
+fn about_plan(out: &mut dyn Write, run: &Run<'_>, plan: &Plan) -> io::Result<()> {
+    if plan.ghosts() > 0 {
+        write!(out, "plan     {}", plan.evaluator)?;
+        if plan.terms > 0 {
+            let ([n, m], period) = (plan.degree, plan.period);
+            write!(out, ", degree {n} x {m}, {} terms, period {:.2} x {:.2}", plan.terms, period.x, period.y)?;
+        }
+        match plan.dropped {
+            0 => writeln!(out)?,
+            n => writeln!(out, ", {n} ghosts out of reach")?,
+        }
+    }
+    if let Some(error) = &run.certificate {
+        writeln!(
+            out,
+            "error    {:.1e} measured at {} pixels, {:.1e} predicted, {:.1e} asked",
+            error.measured, error.pixels, error.predicted, error.asked
+        )?;
+    }
+    match &run.device {
+        Some(device) => writeln!(out, "renderer {}, {}", device.info().renderer, device.info().route),
+        None => Ok(()),
+    }
+}
+
+fn about_times(out: &mut dyn Write, run: &Run<'_>) -> io::Result<()> {
+    if let Some(plan) = &run.plan {
+        let error = plan.predicted;
+        for (source, value) in [
+            ("ghosts left out", error.dropped),
+            ("wrapped copies", error.periodisation),
+            ("harmonics left out", error.truncation),
+            ("interpolation", error.interpolation),
+            ("rounding", error.rounding),
+        ] {
+            writeln!(out, "         at most {value:.1e} from {source}")?;
+        }
+        for cost in &plan.costs {
+            writeln!(out, "         {} was expected to cost {:.1} units", cost.evaluator, cost.milliseconds)?;
+        }
+    }
+    for pass in &run.passes {
+        write!(out, "pass     {:<13}{:>9.2} ms", pass.pass, pass.wall_ms)?;
+        match pass.gpu_ms {
+            Some(gpu) => writeln!(out, ", {gpu:.2} ms by the device's timer")?,
+            None => writeln!(out)?,
+        }
+    }
+    for (stage, ms) in &run.stages {
+        writeln!(out, "stage    {stage:<13}{ms:>9.2} ms")?;
+    }
+    Ok(())
+}
