@@ -41,6 +41,10 @@ pub enum Error {
     #[error("no plan: {0}")]
     Plan(String),
 
+    /// The bench missed a bar, and was asked to hold them all.
+    #[error("missed:\n  {}", missed.join("\n  "))]
+    Missed { missed: Vec<String> },
+
     /// Options that do not go together.
     #[error("{0}")]
     Usage(String),
@@ -60,7 +64,7 @@ impl Error {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::UnknownPreset { .. } | Self::Usage(_) => 2,
-            Self::ToleranceBelowFloor { .. } | Self::ToleranceMissed { .. } => 3,
+            Self::ToleranceBelowFloor { .. } | Self::ToleranceMissed { .. } | Self::Missed { .. } => 3,
             Self::NoContext { .. } => 4,
             _ => 1,
         }

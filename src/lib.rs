@@ -17,6 +17,7 @@
 //! | [`renderer`] | the main path: spectrum → field → normalise → composite |
 //! | [`mod@reference`] | the definition of the field in f64, by direct sum and by direct series |
 //! | [`compare`], [`certificate`] | the one error metric, and a rendered field held against the definition |
+//! | [`measure`] | arms timed in turns, and their ratios |
 //! | [`cli`] | the commands |
 
 pub mod certificate;
@@ -25,6 +26,7 @@ pub mod compare;
 pub mod error;
 pub mod frame;
 pub mod gpu;
+pub mod measure;
 pub mod photo;
 pub mod plan;
 pub mod reference;

@@ -11,7 +11,7 @@ struct Ghost {
 layout(std430, binding = BINDING_GHOSTS) readonly buffer Ghosts {
     Ghost ghosts[];
 };
-layout(std140, binding = 1) uniform Direct {
+layout(std140, binding = BINDING_EVALUATOR) uniform Direct {
     ivec2 corner;   // of the tile, in pixels of the picture
     ivec2 size;     // of the picture, in pixels
     uint ghost_count; // a multiple of STEP: the last ones may have no weight

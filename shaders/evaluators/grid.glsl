@@ -1,10 +1,7 @@
 // `grid`: the cubic of the pixel's cell, which the strips hold for every row of the tile.
-#include "shared/bspline.glsl"
+#include "shared/knots.glsl"
 
 layout(binding = UNIT_STRIPS) uniform sampler2D strips;
-layout(std430, binding = BINDING_KNOTS_X) readonly buffer KnotsX {
-    Knot knots_x[];
-};
 
 float cubic(ivec2 texel, float t) {
     vec4 polynomial = texelFetch(strips, texel, 0);
@@ -12,8 +9,8 @@ float cubic(ivec2 texel, float t) {
 }
 
 vec3 glare(ivec2 pixel) {
-    Knot knot = knots_x[pixel.x];
-    ivec2 texel = ivec2(3u * knot.first, pixel.y);
-    return vec3(cubic(texel, knot.fraction), cubic(texel + ivec2(1, 0), knot.fraction),
-                cubic(texel + ivec2(2, 0), knot.fraction));
+    Knot place = knot(knots_x, pixel.x);
+    ivec2 texel = ivec2(3 * place.first, pixel.y);
+    return vec3(cubic(texel, place.fraction), cubic(texel + ivec2(1, 0), place.fraction),
+                cubic(texel + ivec2(2, 0), place.fraction));
 }

@@ -1,10 +1,5 @@
 // The uniform cubic B-spline between the second and the third of four nodes.
 
-struct Knot {
-    uint first;     // of the four nodes
-    float fraction; // past the second of them
-};
-
 // The weights of the nodes at a fraction t.
 vec4 cubic_weights(float t) {
     float u = 1.0 - t;

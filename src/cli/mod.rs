@@ -1,6 +1,7 @@
 //! The commands, one file each.
 
 mod apply;
+mod bench;
 mod info;
 mod lights;
 mod presets;
@@ -29,7 +30,7 @@ Exit codes:
   0  done
   1  a file could not be read or written, or the driver failed
   2  the command line is wrong
-  3  the tolerance is below what 32-bit floats can give, or was missed under --strict
+  3  the tolerance is below what 32-bit floats can give, or was missed under --strict, or a bench's bar was
   4  there is no OpenGL 4.3
 
 `vglare COMMAND --help` says more of each command, with examples.";
@@ -39,6 +40,7 @@ enum Command {
     Apply(Box<apply::Args>),
     Lights(lights::Args),
     Presets(presets::Args),
+    Bench(bench::Args),
     Info(info::Args),
     Completions(shell::CompletionsArgs),
     Man(shell::ManArgs),
@@ -53,6 +55,7 @@ pub fn run(cli: Cli) -> Result<()> {
         Command::Apply(args) => apply::run(&args),
         Command::Lights(args) => lights::run(&args),
         Command::Presets(args) => presets::run(&args),
+        Command::Bench(args) => bench::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Completions(args) => shell::completions(&args),
         Command::Man(args) => shell::man(&args),

@@ -5,7 +5,7 @@ use bytemuck::Zeroable as _;
 
 use super::harmonics::Harmonics;
 use super::layout::{
-    CELLS, DirectGhost, GHOSTS, HARMONICS_X, HARMONICS_Y, KNOTS_X, KNOTS_Y, Knot, LATTICE, PROFILES, STRIPS,
+    CELLS, DirectGhost, EVALUATOR, GHOSTS, HARMONICS_X, HARMONICS_Y, Knots, LATTICE, PROFILES, STRIPS,
 };
 use super::resource::{Buffer, Scratch, Texel};
 use super::runner::Runner;
@@ -19,17 +19,16 @@ const STEP: usize = 8;
 /// without a word. Drivers of real GPUs have no such limit.
 const MOST_ROUNDS: usize = 65535;
 
-/// The uniform block that `direct` has beside its pass's own; as in `evaluators/direct.glsl`.
-const DIRECT: super::layout::Binding = ("", 1);
-
 /// A lattice over one tile, and where the tile's pixels lie on it.
 pub(crate) struct LatticeTile<'a> {
     /// Phases of the lattice's columns and rows, in 2⁻³² of a period.
     pub node_phases: [&'a [u32]; 2],
     /// Phase from one node to the next.
     pub steps: [u32; 2],
-    /// Where each column and each row of the tile lies.
-    pub knots: [&'a [Knot]; 2],
+    /// Where the columns and the rows of the tile lie.
+    pub knots: [Knots; 2],
+    /// Rows of the tile.
+    pub height: u32,
 }
 
 /// What the evaluators keep from frame to frame.
@@ -40,8 +39,7 @@ pub(crate) struct Evaluators {
     lattice: Scratch,
     cells: Scratch,
     strips: Scratch,
-    knots_x: Buffer<Knot>,
-    knots_y: Buffer<Knot>,
+    knots: Buffer<Knots>,
     ghosts: Buffer<DirectGhost>,
     direct: Buffer<[i32; 8]>,
     ghost_count: usize,
@@ -57,8 +55,7 @@ impl Evaluators {
             lattice: Scratch::default(),
             cells: Scratch::default(),
             strips: Scratch::default(),
-            knots_x: Buffer::new(device, 0)?,
-            knots_y: Buffer::new(device, 0)?,
+            knots: Buffer::new(device, 2)?,
             ghosts: Buffer::new(device, 0)?,
             direct: Buffer::new(device, 1)?,
             ghost_count: 0,
@@ -82,7 +79,7 @@ impl Evaluators {
     /// Readies `direct` for a tile whose first pixel is `corner` in a picture of `size` pixels.
     pub fn direct(&mut self, corner: [i32; 2], size: [i32; 2]) -> Result<()> {
         self.direct.store(&[[corner[0], corner[1], size[0], size[1], self.ghost_count as i32, 0, 0, 0]])?;
-        self.direct.bind_uniform(DIRECT);
+        self.direct.bind_uniform(EVALUATOR);
         self.ghosts.bind_storage(GHOSTS);
         Ok(())
     }
@@ -118,12 +115,10 @@ impl Evaluators {
         let cells = self.cells.get(device, Texel::Rgba, 3 * (columns - 3), rows)?;
         runner.draw("cells.frag", &[], cells, 0)?;
 
-        self.knots_x.store(tile.knots[0])?;
-        self.knots_y.store(tile.knots[1])?;
-        self.knots_x.bind_storage(KNOTS_X);
-        self.knots_y.bind_storage(KNOTS_Y);
+        self.knots.store(&tile.knots)?;
+        self.knots.bind_uniform(EVALUATOR);
         cells.bind(CELLS);
-        let strips = self.strips.get(device, Texel::Rgba, 3 * (columns - 3), tile.knots[1].len() as u32)?;
+        let strips = self.strips.get(device, Texel::Rgba, 3 * (columns - 3), tile.height)?;
         runner.draw("strips.frag", &[], strips, 0)?;
         strips.bind(STRIPS);
         Ok(())

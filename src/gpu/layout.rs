@@ -10,6 +10,8 @@ pub(crate) type Binding = (&'static str, u32);
 
 /// Uniform blocks.
 pub(crate) const PASS: Binding = ("BINDING_PASS", 0);
+/// What an evaluator has beside the pass that asks it.
+pub(crate) const EVALUATOR: Binding = ("BINDING_EVALUATOR", 1);
 
 /// Shader storage blocks.
 pub(crate) const GHOSTS: Binding = ("BINDING_GHOSTS", 0);
@@ -18,8 +20,6 @@ pub(crate) const SPECTRUM: Binding = ("BINDING_SPECTRUM", 2);
 pub(crate) const OFFSETS: Binding = ("BINDING_OFFSETS", 3);
 pub(crate) const PHASES: Binding = ("BINDING_PHASES", 4);
 pub(crate) const PROBES: Binding = ("BINDING_PROBES", 5);
-pub(crate) const KNOTS_X: Binding = ("BINDING_KNOTS_X", 6);
-pub(crate) const KNOTS_Y: Binding = ("BINDING_KNOTS_Y", 7);
 
 /// Texture units.
 pub(crate) const PHOTO: Binding = ("UNIT_PHOTO", 0);
@@ -35,16 +35,15 @@ pub(crate) const RANGE: Binding = ("UNIT_RANGE", 8);
 pub(crate) const WORKBENCH: Binding = ("UNIT_WORKBENCH", 9);
 
 /// Every binding, for the head of every shader.
-pub(crate) const BINDINGS: [Binding; 18] = [
+pub(crate) const BINDINGS: [Binding; 17] = [
     PASS,
+    EVALUATOR,
     GHOSTS,
     PARTIALS,
     SPECTRUM,
     OFFSETS,
     PHASES,
     PROBES,
-    KNOTS_X,
-    KNOTS_Y,
     PHOTO,
     FIELD,
     HARMONICS_X,
@@ -84,13 +83,15 @@ pub(crate) struct DirectGhost {
 }
 const _: () = assert!(size_of::<DirectGhost>() == 32);
 
-/// Where a column or a row lies between the lattice's nodes.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+/// Where the pixels along one axis lie between the lattice's nodes: pixel i at `start + i * pitch`, counted in nodes from
+/// the second that the tile has.
+///
+/// Fixed-point numbers: whole nodes, then 2⁻³² of one. So every tile gives a pixel the same place, bit for bit, and a
+/// shader needs no table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
-pub(crate) struct Knot {
-    /// The first of the four nodes that count.
-    pub first: u32,
-    /// How far past the second of them, 0 to 1.
-    pub fraction: f32,
+pub(crate) struct Knots {
+    pub start: [u32; 2],
+    pub pitch: [u32; 2],
 }
-const _: () = assert!(size_of::<Knot>() == 8);
+const _: () = assert!(size_of::<Knots>() == 16);

@@ -36,6 +36,7 @@ const SOURCES: &[(&str, &str)] = &sources![
     "profiles.frag",
     "range.frag",
     "shared/bspline.glsl",
+    "shared/knots.glsl",
     "shared/phase.glsl",
     "shared/spectrum.glsl",
     "spectrum.comp",

@@ -10,8 +10,8 @@ const TILE: u32 = 8;
 /// A slice is at least this many ghosts: fewer would cost more in summing slices than they win in parallel.
 const SHORTEST_SLICE: usize = 128;
 /// And at most this many: a longer one would need more rounds of its loops than Mesa's software renderer runs (65535;
-/// 37 for each 32 ghosts) before it ends them without a word.
-const LONGEST_SLICE: usize = 1 << 15;
+/// 65 for each 32 ghosts) before it ends them without a word.
+const LONGEST_SLICE: usize = 1 << 14;
 /// And there are at most this many slices.
 const MOST_SLICES: usize = 64;
 /// Room for the slices' sums, in vec4s: 32 MiB.
@@ -93,18 +93,21 @@ impl Spectrum {
         let slices = group.ghosts.len().div_ceil(slice_length) as u32;
 
         self.ghosts.store(group.ghosts)?;
-        if self.partials.length() < slices as usize * vectors {
+        if slices > 1 && self.partials.length() < slices as usize * vectors {
             self.partials = Buffer::new(runner.device(), slices as usize * vectors)?;
         }
         self.ghosts.bind_storage(GHOSTS);
         self.partials.bind_storage(PARTIALS);
-        self.uniforms.store(&[[group.ghosts.len() as u32, slice_length as u32, 0, 0]])?;
+        self.bind();
+        let [n, m] = group.degree;
+        self.uniforms.store(&[[group.ghosts.len() as u32, slice_length as u32, n, m]])?;
         self.uniforms.bind_uniform(PASS);
         let bell = format!("\"{}\"", group.bell);
         runner.dispatch("spectrum.comp", &[("BELL", &bell)], [tiles[0], tiles[1], slices])?;
-
-        self.bind();
-        self.uniforms.store(&[[group.degree[0], group.degree[1], slices, 0]])?;
+        if slices == 1 {
+            return Ok(());
+        }
+        self.uniforms.store(&[[n, m, slices, 0]])?;
         self.uniforms.bind_uniform(PASS);
         runner.dispatch("spectrum_sum.comp", &[], [tiles[0], tiles[1], 1])
     }

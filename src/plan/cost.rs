@@ -2,23 +2,26 @@
 
 use super::{Evaluator, Plan, Request};
 
-/// Nanoseconds on a software renderer on two cores, measured by `vglare bench`. The plan needs their ratios only, and
-/// those hold well enough on a real GPU, where everything is about a thousand times faster.
+/// Nanoseconds on a software renderer (llvmpipe, 256 bits) on two cores at 1920 × 1080: medians of one run of
+/// `vglare bench --rounds 8`, less what a copy takes, divided by the work; while a copy took 3 to 5 ns a pixel. The plan
+/// needs their ratios only, and those hold well enough on a real GPU, where everything is about a thousand times faster.
 mod nanoseconds {
-    /// One bell at one pixel.
-    pub const BELL: f64 = 1.5;
-    /// One term of the series at one pixel.
-    pub const TERM: f64 = 2.0;
-    /// One harmonic of a row's profile at one pixel.
-    pub const HARMONIC: f64 = 2.5;
-    /// One term on the way to a row's profile.
-    pub const PROFILE: f64 = 4.0;
-    /// One interpolation among four nodes.
-    pub const INTERPOLATION: f64 = 6.0;
-    /// One term of one ghost.
-    pub const SPECTRUM: f64 = 1.5;
-    /// Starting a pass.
-    pub const PASS: f64 = 50_000.0;
+    /// One bell at one pixel: `direct`, K = 45.
+    pub const BELL: f64 = 4.0;
+    /// One term of the series at one pixel: `series`, N = M = 10.
+    pub const TERM: f64 = 5.4;
+    /// One harmonic of a row's profile at one pixel: `rows`, N = 10 (3.0) and 57 (2.7).
+    pub const HARMONIC: f64 = 2.8;
+    /// One term on the way to a row's profiles: `rows`, N = 57.
+    pub const PROFILE: f64 = 7.0;
+    /// One cell of the lattice stretched to one row: `grid`, 201 cells (18) and 158 (36).
+    pub const STRIP: f64 = 27.0;
+    /// One interpolation at one pixel: `grid`, the same two (6.5 and 8.4).
+    pub const INTERPOLATION: f64 = 7.5;
+    /// One term of one ghost: K = 45 (5.2) and 1000 (4.3); at N = M = 10 half of each tile of modes is idle (16).
+    pub const SPECTRUM: f64 = 6.0;
+    /// Starting a pass: what the smallest take.
+    pub const PASS: f64 = 100_000.0;
 }
 
 /// What one evaluator is expected to cost.
@@ -36,7 +39,7 @@ pub(super) fn estimate(plan: &Plan, request: &Request) -> Cost {
     let window = request.frame.window;
     let pixels = window.pixels() as f64;
     let rows = |rows: f64, columns: f64| {
-        rows * plan.terms as f64 * 2.0 * PROFILE + rows * columns * f64::from(plan.degree[0] + 1) * HARMONIC
+        rows * plan.terms as f64 * PROFILE + rows * columns * f64::from(plan.degree[0] + 1) * HARMONIC
     };
     let spectrum: f64 = plan
         .groups
@@ -50,7 +53,7 @@ pub(super) fn estimate(plan: &Plan, request: &Request) -> Cost {
         Evaluator::Grid => {
             let [columns, lines] = plan.lattice.map_or([0.0; 2], |lattice| lattice.nodes.map(f64::from));
             let strips = columns * f64::from(window.height);
-            spectrum + rows(lines, columns) + (strips + pixels) * INTERPOLATION + 7.0 * PASS
+            spectrum + rows(lines, columns) + strips * STRIP + pixels * INTERPOLATION + 7.0 * PASS
         }
     };
     Cost { evaluator: plan.evaluator, milliseconds: field * 1e-6 }

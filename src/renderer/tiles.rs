@@ -7,7 +7,7 @@ use glam::DVec2;
 
 use crate::frame::{Frame, Window};
 use crate::gpu::evaluators::LatticeTile;
-use crate::gpu::layout::Knot;
+use crate::gpu::layout::Knots;
 use crate::plan::Lattice;
 use crate::series::phase;
 
@@ -44,7 +44,8 @@ pub(super) fn phases(count: u32, position: impl Fn(f64) -> f64, period: f64) -> 
 pub(super) struct Nodes {
     phases: [Vec<u32>; 2],
     steps: [u32; 2],
-    knots: [Vec<Knot>; 2],
+    knots: [Knots; 2],
+    height: u32,
 }
 
 impl Nodes {
@@ -52,20 +53,21 @@ impl Nodes {
         // The lattice hangs from the window's top left pixel, whichever tile asks.
         let origin = frame.position(f64::from(frame.window.x), f64::from(frame.window.y));
         let pixel = frame.pixel_size();
-        let columns = knots(tile.x - frame.window.x, tile.width, pixel / lattice.step.x);
-        let rows = knots(tile.y - frame.window.y, tile.height, pixel / lattice.step.y);
-        let node_phases = |first: u32, count: u32, position: &dyn Fn(f64) -> f64, period: f64| {
-            phases(count, |index| position(f64::from(first) + index - 1.0), period)
+        let [pitch_x, pitch_y] = [lattice.step.x, lattice.step.y].map(|step| Pitch::new(pixel / step));
+        let columns = pitch_x.span(tile.x - frame.window.x, tile.width);
+        let rows = pitch_y.span(tile.y - frame.window.y, tile.height);
+        // The step that the pitch stands for exactly; it differs from the plan's by rounding.
+        let step = DVec2::new(pixel / pitch_x.nodes(), pixel / pitch_y.nodes());
+        let node_phases = |span: &Span, position: &dyn Fn(f64) -> f64, period: f64| {
+            phases(span.nodes, |index| position(span.first as f64 + index - 1.0), period)
         };
-        let x = |k: f64| origin.x + k * lattice.step.x;
-        let y = |k: f64| origin.y - k * lattice.step.y;
+        let x = |k: f64| origin.x + k * step.x;
+        let y = |k: f64| origin.y - k * step.y;
         Self {
-            phases: [
-                node_phases(columns.first, columns.count, &x, period.x),
-                node_phases(rows.first, rows.count, &y, period.y),
-            ],
-            steps: [phase(lattice.step.x, period.x), phase(lattice.step.y, period.y)],
+            phases: [node_phases(&columns, &x, period.x), node_phases(&rows, &y, period.y)],
+            steps: [phase(step.x, period.x), phase(step.y, period.y)],
             knots: [columns.knots, rows.knots],
+            height: tile.height,
         }
     }
 
@@ -73,29 +75,43 @@ impl Nodes {
         LatticeTile {
             node_phases: [&self.phases[0], &self.phases[1]],
             steps: self.steps,
-            knots: [&self.knots[0], &self.knots[1]],
+            knots: self.knots,
+            height: self.height,
         }
     }
 }
 
-struct Knots {
-    /// The first node that the tile needs, and how many.
-    first: u32,
-    count: u32,
-    /// Counted from that node.
-    knots: Vec<Knot>,
+/// Nodes from pixel to pixel, in 2⁻³² of a node.
+#[derive(Clone, Copy)]
+struct Pitch(u64);
+
+/// The nodes that a tile needs along one axis.
+struct Span {
+    /// The first, and how many.
+    first: u64,
+    nodes: u32,
+    /// Where the tile's pixels lie, counted from that node.
+    knots: Knots,
 }
 
-/// Where `count` pixels lie, the first of them `from` pixels after the lattice's origin, `pitch` nodes apart.
-fn knots(from: i32, count: u32, pitch: f64) -> Knots {
-    let place = |index: u32| (f64::from(from) + f64::from(index)) * pitch;
-    let first = place(0).floor() as u32;
-    let last = place(count - 1).floor() as u32;
-    let knot = |index| {
-        let place = place(index);
-        Knot { first: place.floor() as u32 - first, fraction: place.fract() as f32 }
-    };
-    Knots { first, count: last - first + 4, knots: (0..count).map(knot).collect() }
+impl Pitch {
+    fn new(nodes: f64) -> Self {
+        Self(((nodes * 2f64.powi(32)).round() as u64).max(1))
+    }
+
+    fn nodes(self) -> f64 {
+        self.0 as f64 / 2f64.powi(32)
+    }
+
+    /// For `count` pixels, the first of them `from` pixels after the lattice's origin.
+    fn span(self, from: i32, count: u32) -> Span {
+        let place = |index: u32| (from as u64 + u64::from(index)) * self.0;
+        let first = place(0) >> 32;
+        let last = place(count - 1) >> 32;
+        let halves = |fixed: u64| [(fixed >> 32) as u32, fixed as u32];
+        let knots = Knots { start: halves(place(0) - (first << 32)), pitch: halves(self.0) };
+        Span { first, nodes: (last - first) as u32 + 4, knots }
+    }
 }
 
 #[cfg(test)]
@@ -127,13 +143,18 @@ mod tests {
         let whole = Nodes::new(&lattice, DVec2::new(5.0, 4.0), frame, frame.window);
         let tile = Window { x: 200, y: 113, width: 77, height: 64 };
         let part = Nodes::new(&lattice, DVec2::new(5.0, 4.0), frame, tile);
+        let place = |knots: Knots, index: u64| {
+            let fixed = |[whole, part]: [u32; 2]| (u64::from(whole) << 32) + u64::from(part);
+            let place = fixed(knots.start) + index * fixed(knots.pitch);
+            ((place >> 32) as usize, place as u32)
+        };
         for (axis, from, count) in [(0, 200, 77), (1, 113, 64)] {
             for index in 0..count {
-                let (a, b) = (whole.knots[axis][from + index], part.knots[axis][index]);
-                assert_eq!(a.fraction, b.fraction);
+                let (first, fraction) = place(whole.knots[axis], from + index);
+                let (of_part, same_fraction) = place(part.knots[axis], index);
+                assert_eq!(fraction, same_fraction);
                 for node in 0..4 {
-                    let phase_of = |nodes: &Nodes, knot: Knot| nodes.phases[axis][knot.first as usize + node];
-                    assert_eq!(phase_of(&whole, a), phase_of(&part, b));
+                    assert_eq!(whole.phases[axis][first + node], part.phases[axis][of_part + node]);
                 }
             }
         }

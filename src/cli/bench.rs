@@ -1,0 +1,147 @@
+//! `vglare bench`: what each pass costs here, as ratios that were measured in one run.
+
+mod cases;
+mod first;
+mod many;
+mod report;
+mod scenes;
+mod stage;
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use super::{BackendChoice, stdout, target};
+use crate::gpu::Device;
+use crate::measure::Rounds;
+use crate::{Error, Result};
+
+use report::Report;
+use stage::Stage;
+
+/// Measure what glare costs on this machine
+///
+/// Times move with whatever else the machine does; ratios hardly do. So what is compared runs in turns, and the medians
+/// of several rounds are shown, with the ratio to a yardstick and the least and the most. A copy of the picture on the
+/// device is the yardstick of a frame. A few ratios have a bar that vglare means to hold; each is printed with its
+/// target.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// Where OpenGL comes from; auto takes the first that gives OpenGL 4.3
+    #[arg(long, value_enum, default_value_t = BackendChoice::Auto)]
+    backend: BackendChoice,
+
+    /// The picture's size in pixels
+    #[arg(long, value_name = "WxH", default_value = "1920x1080", value_parser = size)]
+    size: [u32; 2],
+
+    /// How often each thing is measured; made even. By default 10
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=10_000))]
+    rounds: Option<u16>,
+
+    /// A quick look: 4 rounds unless --rounds says otherwise, and no series at all pixels
+    #[arg(long)]
+    quick: bool,
+
+    /// Write the rows of all tables to this file too
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+
+    /// Write all that is printed, and the bars, to this file too
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+
+    /// Overwrite the files of --csv and --json
+    #[arg(long)]
+    force: bool,
+
+    /// Fail where a bar is missed
+    #[arg(long)]
+    strict: bool,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  vglare bench                              What does a 1080p frame cost here?
+  vglare bench --quick --backend osmesa     A quick look at Mesa's software renderer
+  vglare bench --size 3840x2160 --csv 4k.csv";
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once(['x', 'X']).map(|(width, height)| [width.parse(), height.parse()]);
+    match sides {
+        Some([Ok(width @ 16..=16384), Ok(height @ 16..=16384)]) => Ok([width, height]),
+        _ => Err("expected WxH, each 16 to 16384 pixels, like 1920x1080".to_owned()),
+    }
+}
+
+/// Measures, prints and writes.
+///
+/// # Errors
+///
+/// [`Error::NoContext`] without OpenGL 4.3; [`Error::Exists`] and [`Error::Write`] where a file cannot be written;
+/// [`Error::Missed`] where a bar is missed and that was asked to be an error.
+pub fn run(args: &Args) -> Result<()> {
+    for path in args.csv.iter().chain(&args.json) {
+        target::check(path, args.force)?;
+    }
+    let report = measure(args)?;
+    stdout::print(|out| report.print(out))?;
+    if let Some(path) = &args.csv {
+        let text = report.csv().map_err(|reason| Error::write(path, reason))?;
+        target::write_text(path, &text, args.force)?;
+    }
+    if let Some(path) = &args.json {
+        target::write_json(path, &report, args.force)?;
+    }
+    let missed = report.missed();
+    if args.strict && !missed.is_empty() { Err(Error::Missed { missed }) } else { Ok(()) }
+}
+
+fn measure(args: &Args) -> Result<Report> {
+    let rounds = Rounds::new(2, args.rounds.map_or(if args.quick { 4 } else { 10 }, usize::from));
+    let started = Instant::now();
+    let device = Device::open(args.backend.backends())?;
+    let opened = started.elapsed();
+
+    let stage = Stage::new(device, args.size, rounds);
+    let mut report = Report::new(stage.device().info(), args.size, rounds);
+    first::frame(&stage, opened, &mut report)?;
+    cases::default_path(&stage, &mut report)?;
+    many::ghosts(&stage, &mut report, args.quick)?;
+    if !args.quick {
+        cases::rows_and_series(&stage, &mut report)?;
+    }
+    cases::passes(&stage, &mut report, args.quick)?;
+    Ok(report)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(clap::Parser)]
+    struct Cli {
+        #[command(flatten)]
+        args: Args,
+    }
+
+    fn parsed(args: &[&str]) -> Result<Args, clap::Error> {
+        clap::Parser::try_parse_from(["bench"].iter().chain(args)).map(|Cli { args }| args)
+    }
+
+    #[test]
+    fn sizes_are_two_sides() {
+        assert_eq!(parsed(&[]).unwrap().size, [1920, 1080]);
+        assert_eq!(parsed(&["--size", "64x36"]).unwrap().size, [64, 36]);
+        for bad in ["64", "64x", "x36", "0x36", "64x-1", "64x36x2", "99999x10", "a×b"] {
+            assert!(parsed(&["--size", bad]).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn a_file_that_exists_is_refused_before_anything_is_measured() {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let args = parsed(&["--csv", file.path().to_str().unwrap()]).unwrap();
+        assert!(matches!(run(&args), Err(Error::Exists { .. })));
+    }
+}

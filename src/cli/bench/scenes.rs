@@ -1,0 +1,34 @@
+//! What the bench lets glare: always the same.
+
+use glam::DVec2;
+
+use crate::Result;
+use crate::frame::Frame;
+use crate::scene::presets::{self, DEFAULT_PRESET};
+use crate::scene::{Ghost, Light, ghosts};
+use crate::series::Bell;
+
+/// Five lights through the lens that is used where none is named.
+pub(super) fn default_lens() -> Result<Vec<Ghost>> {
+    let lights = [(-0.9, 0.6, 3.0), (0.2, 0.7, 1.0), (0.75, -0.1, 2.0), (-0.3, -0.5, 0.5), (1.3, 0.85, 1.5)];
+    let light = |(x, y, flux): (f64, f64, f64)| Light {
+        position: DVec2::new(x, y),
+        flux: [flux, 0.9 * flux, 0.7 * flux],
+        size: 0.02,
+    };
+    Ok(ghosts(&lights.map(light), &presets::named(DEFAULT_PRESET)?))
+}
+
+/// `count` Gaussians spread evenly over the picture and a little beyond, of `smallest` to twice that size.
+pub(super) fn scattered(count: usize, smallest: f64, frame: Frame) -> Vec<Ghost> {
+    let aspect = f64::from(frame.width) / f64::from(frame.height);
+    // Multiples of irrational numbers, modulo 1: as even as a grid, and without its rows.
+    let part = |k: usize, irrational: f64| (0.5 + k as f64 * irrational).fract();
+    let one = |k: usize| Ghost {
+        bell: Bell::Gaussian,
+        center: 2.2 * DVec2::new(aspect * (part(k, 0.754_877_666) - 0.5), part(k, 0.569_840_291) - 0.5),
+        size: DVec2::splat(smallest * (1.0 + part(k, 0.618_033_989))),
+        radiance: [part(k, 0.414_213_562), part(k, 0.732_050_808), part(k, 0.236_067_977)],
+    };
+    (0..count).map(one).collect()
+}
