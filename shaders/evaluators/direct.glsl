@@ -21,7 +21,8 @@ vec3 glare(ivec2 pixel) {
     ivec2 p = corner + pixel;
     // Integers up to the division, so that no pixel's centre is off by more than one rounding.
     vec2 position = vec2(ivec2(2 * p.x + 1 - size.x, size.y - 2 * p.y - 1)) / float(size.y);
-    vec3 sum = vec3(0.0);
+    // Batches are summed with what each addition lost (Kahan), so that rounding does not grow with K.
+    precise vec3 sum = vec3(0.0), lost = vec3(0.0);
     for (uint base = 0u; base < ghost_count; base += 64u) {
         vec3 batch = vec3(0.0);
         uint last = min(base + 64u, ghost_count);
@@ -33,7 +34,10 @@ vec3 glare(ivec2 pixel) {
                 batch += ghost.weight.rgb * bell_value((position - ghost.center) * ghost.inverse_size);
             }
         }
-        sum += batch;
+        precise vec3 addend = batch - lost;
+        precise vec3 next = sum + addend;
+        lost = (next - sum) - addend;
+        sum = next;
     }
     return sum;
 }

@@ -46,4 +46,10 @@ impl Harmonics {
             texture.bind(self.unit);
         }
     }
+
+    /// The table as it was last filled: (cos, sin) of each position, harmonic after harmonic.
+    #[cfg(test)]
+    pub fn values(&self) -> Vec<f32> {
+        self.texture.current().map_or(Vec::new(), |texture| texture.read_level(0))
+    }
 }

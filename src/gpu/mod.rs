@@ -27,3 +27,6 @@ mod timer;
 
 pub use context::{Backend, Device, Info, Limits};
 pub use timer::PassTime;
+
+#[cfg(test)]
+mod tests;

@@ -65,13 +65,27 @@ impl Program {
         Self::link(device, &[(glow::COMPUTE_SHADER, compute)], defines)
     }
 
+    /// A program of one compute shader that is no file of `shaders/`; it has the same head as all.
+    #[cfg(test)]
+    pub fn compute_from(device: &Rc<Device>, source: &str) -> Result<Self> {
+        let text = head(&[]) + source;
+        Self::link_texts(device, "a test's shader", vec![(glow::COMPUTE_SHADER, text, Vec::new())])
+    }
+
     fn link(device: &Rc<Device>, stages: &[(u32, &str)], defines: &[Define<'_>]) -> Result<Self> {
+        let texts = stages.iter().map(|&(stage, path)| {
+            let (text, files) = assemble(path, defines)?;
+            Ok((stage, text, files))
+        });
+        Self::link_texts(device, stages[stages.len() - 1].1, texts.collect::<Result<_>>()?)
+    }
+
+    fn link_texts(device: &Rc<Device>, name: &str, texts: Vec<(u32, String, Vec<String>)>) -> Result<Self> {
         let gl = device.gl();
-        let name = stages[stages.len() - 1].1;
         let raw = unsafe { gl.create_program() }.map_err(|reason| Error::Gl(format!("{name}: {reason}")))?;
         let program = Self { device: device.clone(), raw };
-        for &(stage, path) in stages {
-            let shader = compile(gl, stage, path, defines)?;
+        for (stage, text, files) in texts {
+            let shader = compile(gl, stage, &text, &files)?;
             unsafe {
                 gl.attach_shader(raw, shader);
                 // Freed together with the program from here on.
@@ -107,11 +121,11 @@ impl Drop for Program {
     }
 }
 
-fn compile(gl: &glow::Context, stage: u32, path: &str, defines: &[Define<'_>]) -> Result<glow::Shader> {
-    let (source, files) = assemble(path, defines)?;
+fn compile(gl: &glow::Context, stage: u32, source: &str, files: &[String]) -> Result<glow::Shader> {
+    let path = files.first().map_or("a shader", String::as_str);
     let shader = unsafe { gl.create_shader(stage) }.map_err(|reason| Error::Gl(format!("{path}: {reason}")))?;
     unsafe {
-        gl.shader_source(shader, &source);
+        gl.shader_source(shader, source);
         gl.compile_shader(shader);
     }
     if unsafe { gl.get_shader_compile_status(shader) } {
@@ -125,6 +139,14 @@ fn compile(gl: &glow::Context, stage: u32, path: &str, defines: &[Define<'_>]) -
 
 /// The whole text of a shader, and the files that its `#line` directives number.
 fn assemble(path: &str, defines: &[Define<'_>]) -> Result<(String, Vec<String>)> {
+    let mut text = head(defines);
+    let mut files = Vec::new();
+    include(path, defines, &mut text, &mut files)?;
+    Ok((text, files))
+}
+
+/// What every shader begins with.
+fn head(defines: &[Define<'_>]) -> String {
     let mut text = String::from("#version 430 core\n");
     for (name, number) in BINDINGS {
         let _ = writeln!(text, "#define {name} {number}");
@@ -132,19 +154,20 @@ fn assemble(path: &str, defines: &[Define<'_>]) -> Result<(String, Vec<String>)>
     for (name, value) in defines {
         let _ = writeln!(text, "#define {name} {value}");
     }
-    let mut files = Vec::new();
-    include(path, defines, &mut text, &mut files)?;
-    Ok((text, files))
+    text
+}
+
+/// A file of `shaders/`, as it is.
+pub(super) fn source(path: &str) -> Result<&'static str> {
+    let found = SOURCES.iter().find(|(name, _)| *name == path);
+    found.map(|(_, source)| *source).ok_or_else(|| Error::Gl(format!("there is no shader called {path}")))
 }
 
 fn include(path: &str, defines: &[Define<'_>], text: &mut String, files: &mut Vec<String>) -> Result<()> {
     if files.iter().any(|file| file == path) {
         return Ok(());
     }
-    let (_, source) = SOURCES
-        .iter()
-        .find(|(name, _)| *name == path)
-        .ok_or_else(|| Error::Gl(format!("there is no shader called {path}")))?;
+    let source = source(path)?;
     let index = files.len();
     files.push(path.to_owned());
     let _ = writeln!(text, "#line 1 {index}");

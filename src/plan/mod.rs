@@ -188,7 +188,7 @@ pub fn plan(ghosts: &[Ghost], request: &Request) -> Result<Plan> {
 
 /// The plan that one evaluator asks for.
 fn candidate(ghosts: &[Ghost], weighed: &Weighed, request: &Request, evaluator: Evaluator) -> Result<Plan> {
-    let rounding = rounding::bound(weighed, evaluator);
+    let rounding = rounding::bound(ghosts, weighed, evaluator);
     // With the whole of the series given, there is nothing left to plan: the error is predicted as it comes.
     let given = request.period.is_some() && request.degree.is_some() && evaluator != Evaluator::Grid;
     let usable = request.tolerance - rounding;

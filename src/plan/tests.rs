@@ -1,1 +1,98 @@
+//! What only the plan's own parts can show: each bound against what it bounds.
 
+use std::f64::consts::PI;
+
+use super::*;
+use crate::reference;
+
+fn ghost(center: [f64; 2], size: [f64; 2]) -> Ghost {
+    Ghost { bell: Bell::Gaussian, center: center.into(), size: size.into(), radiance: [1.0; 3] }
+}
+
+#[test]
+fn the_truncation_bound_is_reached_at_the_centre_of_a_ghost() {
+    // One ghost on a pixel's centre: all that is left out has one sign there, so the bound is the error.
+    let ghosts = [ghost([0.0, 0.0], [0.3, 0.2])];
+    for tolerance in [1e-2, 1e-3, 1e-4] {
+        let request = Request { evaluator: Some(Evaluator::Rows), ..Request::new(Frame::full(33, 19), tolerance) };
+        let plan = plan(&ghosts, &request).unwrap();
+        let highest = [200, 200];
+        let rectangle = vec![highest[1] + 1; highest[0] as usize + 1];
+        let whole = reference::series(&ghosts, plan.period, &rectangle, DVec2::ZERO)[0];
+        let cut = reference::series(&ghosts, plan.period, &plan.counts, DVec2::ZERO)[0];
+        let ratio = (whole - cut) / plan.predicted.truncation;
+        assert!((0.999..1.000_001).contains(&ratio), "{tolerance:e}: {ratio}");
+    }
+}
+
+#[test]
+fn the_interpolation_bound_holds_for_a_lattice_evaluated_in_f64() {
+    let ghosts = [ghost([0.1, 0.0], [0.3, 0.2]), ghost([-0.7, 0.3], [0.5, 0.4])];
+    for tolerance in [1e-1, 1e-2, 1e-3] {
+        let frame = Frame::full(160, 90);
+        let request = Request { evaluator: Some(Evaluator::Grid), ..Request::new(frame, tolerance) };
+        let plan = plan(&ghosts, &request).unwrap();
+        let lattice = plan.lattice.unwrap();
+        // A row through the ghosts: along x the spline meets cos of n x and sin of n x, one harmonic after the other.
+        let theta = 2.0 * PI * lattice.step.x / plan.period.x;
+        let field = |x: f64, gained: bool| -> f64 {
+            let one = |ghost: &Ghost| {
+                let shape = ghost.bell.shape();
+                let coefficient = |n: u32| shape.coefficient(n, ghost.size.x / plan.period.x);
+                let term = |n: u32| {
+                    let gain = if gained { 3.0 / (2.0 + (f64::from(n) * theta).cos()) } else { 1.0 };
+                    let weight = if n == 0 { 1.0 } else { 2.0 };
+                    gain * weight
+                        * coefficient(n)
+                        * (2.0 * PI * f64::from(n) * (x - ghost.center.x) / plan.period.x).cos()
+                };
+                (0..=plan.degree[0]).map(term).sum::<f64>()
+            };
+            ghosts.iter().map(one).sum()
+        };
+        let mut worst = 0.0f64;
+        for i in 0..160 {
+            let x = frame.x(f64::from(i));
+            let place = (x - frame.x(0.0)) / lattice.step.x;
+            let (cell, t) = (place.floor(), place.fract());
+            let node = |k: f64| field(frame.x(0.0) + (cell + k) * lattice.step.x, true);
+            let u = 1.0 - t;
+            let weights = [u.powi(3), 4.0 - 3.0 * t * t * (2.0 - t), 4.0 - 3.0 * u * u * (2.0 - u), t.powi(3)];
+            let value: f64 = weights.iter().zip([-1.0, 0.0, 1.0, 2.0]).map(|(w, k)| w / 6.0 * node(k)).sum();
+            worst = worst.max((value - field(x, false)).abs());
+        }
+        assert!(worst > 0.0 && worst <= lattice.error, "{tolerance:e}: {worst:e} of {:e}", lattice.error);
+    }
+}
+
+#[test]
+fn groups_hold_every_kept_ghost_once_and_sizes_within_half_an_octave() {
+    let mut ghosts = Vec::new();
+    for k in 0..60 {
+        let size = 0.05 * 1.07f64.powi(k);
+        ghosts.push(ghost([0.01 * f64::from(k), 0.0], [size, 0.3]));
+    }
+    let plan = plan(&ghosts, &Request::new(Frame::full(64, 36), 1e-2)).unwrap();
+    let mut members: Vec<u32> = plan.groups.iter().flat_map(|group| group.members.clone()).collect();
+    members.sort_unstable();
+    assert!(members.windows(2).all(|pair| pair[0] < pair[1]), "no ghost twice");
+    assert_eq!(members.len() + plan.dropped, ghosts.len());
+    for group in &plan.groups {
+        let sizes = group.members.iter().map(|&index| ghosts[index as usize].size.x);
+        let (low, high) = sizes.fold((f64::INFINITY, 0.0f64), |(low, high), size| (low.min(size), high.max(size)));
+        assert!(high / low <= 2f64.sqrt() * (1.0 + 1e-12), "{low} to {high}");
+        assert_eq!(group.smallest.x, low);
+    }
+}
+
+#[test]
+fn the_direct_sum_knows_how_far_f32_shifts_a_small_bell() {
+    let request = |ghosts: &[Ghost]| {
+        let request = Request { evaluator: Some(Evaluator::Direct), ..Request::new(Frame::full(65, 37), 0.5) };
+        plan(ghosts, &request).unwrap().predicted.rounding
+    };
+    let frame = Frame::full(65, 37);
+    let pixel = frame.position(60.0, 3.0).to_array();
+    let (middle, aside) = (request(&[ghost([0.0, 0.0], [1e-4; 2])]), request(&[ghost(pixel, [1e-4; 2])]));
+    assert!(middle < 1e-6 && aside > 1e-3, "{middle:e} {aside:e}");
+}

@@ -68,10 +68,12 @@ fn peak_weight(ghost: &Ghost, scale: [f64; 3]) -> f64 {
     ghost.radiance.iter().zip(scale).map(|(radiance, scale)| radiance.abs() / scale).fold(0.0, f64::max)
 }
 
-/// From the ghost's centre to the nearest point of the window, in sizes.
+/// From the ghost's centre to the nearest centre of a pixel of the window, in sizes: a bell much smaller than a pixel
+/// may well lie between pixels, and then nothing sees it.
 fn nearest_offset(ghost: &Ghost, frame: Frame) -> DVec2 {
     let (low, high) = frame.bounds();
-    (ghost.center.clamp(low, high) - ghost.center) / ghost.size
+    let pixel = frame.pixel(ghost.center.clamp(low, high)).round();
+    (frame.position(pixel.x, pixel.y) - ghost.center) / ghost.size
 }
 
 /// Pixels at which the field may be largest.

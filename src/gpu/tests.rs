@@ -1,0 +1,244 @@
+//! What Rust and GLSL agree on: shaders echo the structs field by field, and the harmonics are held to f64.
+
+use std::f64::consts::TAU;
+use std::rc::Rc;
+
+use bytemuck::Pod;
+
+use super::composite::Composite;
+use super::context::{Backend, Device};
+use super::harmonics::Harmonics;
+use super::layout::{Binding, DirectGhost, GHOSTS, HARMONICS_X, KNOTS_X, Knot, PARTIALS, PASS, SpectralGhost};
+use super::resource::Buffer;
+use super::runner::Runner;
+use super::shader::{self, Program};
+
+/// Runs `test` on each backend, each with a thread of its own; no context is a failure.
+fn on_each_backend(test: impl Fn(&Rc<Device>) + Sync) {
+    for backend in Backend::ALL {
+        std::thread::scope(|scope| {
+            let thread = scope.spawn(|| test(&Device::open(&[backend]).expect("these tests need GL")));
+            thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+        });
+    }
+}
+
+/// The declaration in a file of `shaders/` that begins so, to its `};`: the very text that the passes compile.
+fn declaration(path: &str, begin: &str) -> String {
+    let source = shader::source(path).unwrap();
+    let from = source.find(begin).unwrap_or_else(|| panic!("{path} has no {begin:?}"));
+    let length = source[from..].find("};").unwrap() + 2;
+    source[from..from + length].to_owned()
+}
+
+/// A shader's view of a block: what declares it, where it is bound, and its words, floats as their bits.
+struct View {
+    declarations: Vec<String>,
+    uniform: bool,
+    binding: Binding,
+    words: Vec<String>,
+}
+
+impl View {
+    /// What a shader sees of `data`, word by word.
+    fn echo<T: Pod>(&self, device: &Rc<Device>, data: &[T]) -> Vec<u32> {
+        let mut source = self.declarations.join("\n");
+        source.push_str("\nlayout(std430, binding = BINDING_PARTIALS) writeonly buffer Echo { uint echo[]; };\n");
+        source.push_str("layout(local_size_x = 1) in;\nvoid main() {\n");
+        for (index, word) in self.words.iter().enumerate() {
+            source.push_str(&format!("    echo[{index}] = {word};\n"));
+        }
+        source.push_str("}\n");
+        let program = Program::compute_from(device, &source).unwrap();
+        let input = Buffer::from_slice(device, data).unwrap();
+        let echo = Buffer::<u32>::new(device, self.words.len()).unwrap();
+        if self.uniform {
+            input.bind_uniform(self.binding);
+        } else {
+            input.bind_storage(self.binding);
+        }
+        echo.bind_storage(PARTIALS);
+        program.dispatch([1, 1, 1]);
+        echo.read(self.words.len())
+    }
+}
+
+/// GLSL that gives each component of a vector as a word.
+fn components(vector: &str, count: usize, float: bool) -> Vec<String> {
+    let component = |letter: char| {
+        let value = format!("{vector}.{letter}");
+        if float { format!("floatBitsToUint({value})") } else { value }
+    };
+    "xyzw".chars().take(count).map(component).collect()
+}
+
+/// Two ghosts, as the shader of `path` declares them: the second shows the stride.
+fn ghosts(path: &str, first: &str, first_is_float: bool, second: &str) -> View {
+    let words = ["ghosts[0]", "ghosts[1]"].map(|ghost| {
+        [
+            components(&format!("{ghost}.{first}"), 2, first_is_float),
+            components(&format!("{ghost}.{second}"), 2, true),
+            components(&format!("{ghost}.weight"), 4, true),
+        ]
+        .concat()
+    });
+    let block = "layout(std430, binding = BINDING_GHOSTS)";
+    View {
+        declarations: vec![declaration(path, "struct Ghost {"), declaration(path, block)],
+        uniform: false,
+        binding: GHOSTS,
+        words: words.concat(),
+    }
+}
+
+fn bits(values: &[f32]) -> Vec<u32> {
+    values.iter().map(|value| value.to_bits()).collect()
+}
+
+#[test]
+fn shaders_read_spectral_ghosts_as_they_are_written() {
+    let ghost = |k: u8| {
+        let at = |index: u8| f32::from(10 * k + index) + 0.5;
+        let (phase, size, weight, pad) = ([7 + u32::from(k), 9], [at(2), at(3)], [at(4), at(5), at(6)], at(7));
+        let expected = [phase.to_vec(), bits(&size), bits(&weight), bits(&[pad])].concat();
+        (SpectralGhost { phase, size, weight, pad }, expected)
+    };
+    let ([first, second], [a, b]) = ([ghost(0).0, ghost(1).0], [ghost(0).1, ghost(1).1]);
+    let view = ghosts("spectrum.comp", "phase", false, "size");
+    on_each_backend(|device| assert_eq!(view.echo(device, &[first, second]), [a.clone(), b.clone()].concat()));
+}
+
+#[test]
+fn shaders_read_direct_ghosts_as_they_are_written() {
+    let ghost = |k: u8| {
+        let at = |index: u8| f32::from(10 * k + index) + 0.5;
+        let (center, inverse_size, weight, pad) = ([at(0), at(1)], [at(2), at(3)], [at(4), at(5), at(6)], at(7));
+        let expected = [bits(&center), bits(&inverse_size), bits(&weight), bits(&[pad])].concat();
+        (DirectGhost { center, inverse_size, weight, pad }, expected)
+    };
+    let ([first, second], [a, b]) = ([ghost(0).0, ghost(1).0], [ghost(0).1, ghost(1).1]);
+    let view = ghosts("evaluators/direct.glsl", "center", true, "inverse_size");
+    on_each_backend(|device| assert_eq!(view.echo(device, &[first, second]), [a.clone(), b.clone()].concat()));
+}
+
+#[test]
+fn shaders_read_knots_as_they_are_written() {
+    let knots = [Knot { first: 3, fraction: 0.25 }, Knot { first: 5, fraction: 0.75 }];
+    let word =
+        |index: usize| [format!("knots_x[{index}].first"), format!("floatBitsToUint(knots_x[{index}].fraction)")];
+    let view = View {
+        declarations: vec![
+            declaration("shared/bspline.glsl", "struct Knot {"),
+            declaration("evaluators/grid.glsl", "layout(std430, binding = BINDING_KNOTS_X)"),
+        ],
+        uniform: false,
+        binding: KNOTS_X,
+        words: [word(0), word(1)].concat(),
+    };
+    let expected = [3, 0.25f32.to_bits(), 5, 0.75f32.to_bits()];
+    on_each_backend(|device| assert_eq!(view.echo(device, &knots), expected));
+}
+
+#[test]
+fn shaders_read_the_uniforms_of_the_composite_as_they_are_written() {
+    let uniforms = Composite {
+        scale: [1.0, 2.0, 3.0, 4.0],
+        light_gain: [5.0, 6.0, 7.0, 8.0],
+        luminance: [9.0, 10.0, 11.0, 12.0],
+        strength: 13.0,
+        pad: [14.0, 15.0, 16.0],
+    };
+    let scalars = ["strength", "pad0", "pad1", "pad2"].map(|name| format!("floatBitsToUint({name})"));
+    let vectors = ["scale", "light_gain", "luminance"].map(|name| components(name, 4, true));
+    let view = View {
+        declarations: vec![declaration("composite.frag", "layout(std140, binding = BINDING_PASS)")],
+        uniform: true,
+        binding: PASS,
+        words: [vectors.concat(), scalars.to_vec()].concat(),
+    };
+    let expected: Vec<u32> = (1..=16u8).map(|value| f32::from(value).to_bits()).collect();
+    on_each_backend(|device| assert_eq!(view.echo(device, &[uniforms]), expected));
+}
+
+#[test]
+fn an_echo_of_other_fields_is_not_what_was_written() {
+    let knots = [Knot { first: 3, fraction: 0.25 }];
+    let view = View {
+        declarations: vec![
+            "struct Knot { float fraction; uint first; };".into(),
+            declaration("evaluators/grid.glsl", "layout(std430, binding = BINDING_KNOTS_X)"),
+        ],
+        uniform: false,
+        binding: KNOTS_X,
+        words: vec!["knots_x[0].first".into(), "floatBitsToUint(knots_x[0].fraction)".into()],
+    };
+    on_each_backend(|device| assert_eq!(view.echo(device, &knots), [0.25f32.to_bits(), 3]));
+}
+
+/// The largest error of cos and sin of n times each phase, against f64, of the phases as they are.
+fn harmonic_error(runner: &Runner, phases: &[u32], degree: u32, step: Option<u32>) -> f64 {
+    let mut harmonics = Harmonics::new(runner, HARMONICS_X).unwrap();
+    harmonics.fill(runner, phases, degree, step).unwrap();
+    let values = harmonics.values();
+    let mut worst = 0.0f64;
+    for (index, value) in values.chunks_exact(2).enumerate() {
+        let (n, phase) = ((index / phases.len()) as u32, phases[index % phases.len()]);
+        let turns = |phase: u32| TAU * f64::from(n.wrapping_mul(phase)) / 2f64.powi(32);
+        let gain = step.map_or(1.0, |step| 3.0 / (2.0 + turns(step).cos()));
+        let (sin, cos) = turns(phase).sin_cos();
+        for (got, exact) in value.iter().zip([gain * cos, gain * sin]) {
+            assert!(got.is_finite());
+            worst = worst.max((f64::from(*got) - exact).abs());
+        }
+    }
+    worst
+}
+
+#[test]
+fn harmonics_are_as_exact_as_f32_for_every_n() {
+    const DEGREE: u32 = 4096;
+    // Pixels of a picture, and where quadrants and octants meet.
+    let mut phases: Vec<u32> = (0..250u32).map(|k| k.wrapping_mul(0x0103_5b1d)).collect();
+    phases.extend((0..16).flat_map(|octant: u32| [octant << 28, (octant << 28).wrapping_sub(1), (octant << 28) + 1]));
+    let step = 0x0007_a1b3;
+    on_each_backend(|device| {
+        let runner = Runner::new(device).unwrap();
+        let (plain, prefiltered) =
+            (harmonic_error(&runner, &phases, DEGREE, None), harmonic_error(&runner, &phases, DEGREE, Some(step)));
+        println!("{}: {plain:.1e}, divided by the spline's response {prefiltered:.1e}", device.info().backend);
+        // The polynomials are within 2e-9; the rest is a handful of f32 roundings of values up to 1. It does not grow
+        // with n, because n * phase wraps exactly.
+        assert!(plain <= 2.5e-7, "{plain:e}");
+        // The gain is 1 to 3 and has roundings of its own.
+        assert!(prefiltered <= 3.0 * 4e-7, "{prefiltered:e}");
+    });
+}
+
+#[test]
+fn positions_keep_their_harmonics_through_their_phases() {
+    // From x itself: the phase is rounded to 2^-33 of a turn, and harmonic n sees n times that.
+    const DEGREE: u32 = 4096;
+    const PERIOD: f64 = 20.0;
+    let positions: Vec<f64> = (0..275).map(|k| -3.0 + 6.0 * (f64::from(k) + 0.5) / 275.0).collect();
+    let phases: Vec<u32> = positions.iter().map(|&x| crate::series::phase(x, PERIOD)).collect();
+    on_each_backend(|device| {
+        let runner = Runner::new(device).unwrap();
+        let mut harmonics = Harmonics::new(&runner, HARMONICS_X).unwrap();
+        harmonics.fill(&runner, &phases, DEGREE, None).unwrap();
+        let values = harmonics.values();
+        for highest in [64, 256, 1024, 4096usize] {
+            let rows = values.chunks_exact(2 * positions.len()).take(highest + 1).enumerate();
+            let error = |(n, row): (usize, &[f32])| {
+                let one = |(&x, value): (&f64, &[f32])| {
+                    let (sin, cos) = (TAU * (n as f64 * x / PERIOD)).sin_cos();
+                    (f64::from(value[0]) - cos).abs().max((f64::from(value[1]) - sin).abs())
+                };
+                positions.iter().zip(row.chunks_exact(2)).map(one).fold(0.0, f64::max)
+            };
+            let worst = rows.map(error).fold(0.0, f64::max);
+            let limit = 2.5e-7 + TAU * highest as f64 * 2f64.powi(-33);
+            println!("{}: N = {highest}: {worst:.1e}, {limit:.1e} allowed", device.info().backend);
+            assert!(worst <= limit);
+        }
+    });
+}
