@@ -1,69 +1,37 @@
 //! The main path: spectrum → field → normalise → composite.
 //!
-//! ```text
+//! ```no_run
+//! # use vglare::{frame::Frame, gpu::{Backend, Device}, plan::{plan, Request}, renderer::{Renderer, Settings}};
+//! # let (ghosts, frame) = (Vec::new(), Frame::full(1920, 1080));
+//! # let mut pixels = vec![[0.0; 4]; frame.window.pixels()];
+//! let device = Device::open(&Backend::ALL)?;
+//! let plan = plan(&ghosts, &Request::new(frame, 1e-3))?;
 //! let mut renderer = Renderer::new(&device)?;
-//! renderer.set_scene(&ghosts, &plan)?;          // the spectrum, once
-//! renderer.composite(&frame, &mut pixels, &settings)?;
+//! renderer.set_scene(&ghosts, &plan)?; // the spectrum, once
+//! renderer.composite(frame, &mut pixels, &Settings::default())?;
+//! # Ok::<(), vglare::Error>(())
 //! ```
 
+mod convert;
+mod settings;
 mod tiles;
 
 use std::rc::Rc;
 
 use crate::frame::{Frame, Window};
-use crate::gpu::composite::{Composite, CompositePass, Variant};
+use crate::gpu::composite::{Composite, CompositePass};
 use crate::gpu::copy::CopyPass;
 use crate::gpu::evaluators::Evaluators;
 use crate::gpu::field::{FieldPass, Source};
-use crate::gpu::layout::{DirectGhost, SpectralGhost};
 use crate::gpu::range::RangePass;
 use crate::gpu::runner::Runner;
 use crate::gpu::spectrum::{Spectrum, SpectrumGroup};
 use crate::gpu::{Device, PassTime};
 use crate::plan::{Evaluator, Plan};
 use crate::scene::Ghost;
-use crate::series::{Bell, phase};
 use crate::{Error, Result};
 
-/// How the field's values become glare.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, clap::ValueEnum)]
-#[serde(rename_all = "lowercase")]
-pub enum Normalize {
-    /// As they are: physical.
-    #[default]
-    None,
-    /// Clamped to 0..1.
-    Clamp,
-    /// Stretched so that the smallest over the picture becomes 0 and the largest 1, all colours alike; the prototype's.
-    Minmax,
-}
-
-/// What a person sets about the picture; the field does not depend on it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
-    /// What the glare is multiplied by; 0 leaves the photo as it is.
-    pub strength: f64,
-    /// How the field's values become glare.
-    pub normalize: Normalize,
-    /// What a light keeps of itself, RGB; 1 unless light is taken from the photo.
-    pub light_gain: [f64; 3],
-    /// The luminance from which on a pixel is a light.
-    pub threshold: f64,
-    /// Weights of R, G and B in luminance.
-    pub luminance: [f64; 3],
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            strength: 1.0,
-            normalize: Normalize::None,
-            light_gain: [1.0; 3],
-            threshold: f64::INFINITY,
-            luminance: [0.2126, 0.7152, 0.0722],
-        }
-    }
-}
+pub use settings::{Normalize, Settings};
 
 /// Holds the scene on the device, and renders pictures with it.
 pub struct Renderer {
@@ -108,10 +76,10 @@ impl Renderer {
         }
         self.scene = None;
         if plan.evaluator == Evaluator::Direct {
-            self.evaluators.set_ghosts(&self.runner, &direct_ghosts(ghosts, plan))?;
+            self.evaluators.set_ghosts(&self.runner, &convert::direct_ghosts(ghosts, plan))?;
         } else {
             let spectral: Vec<_> =
-                plan.groups.iter().map(|group| spectral_ghosts(ghosts, plan, &group.members)).collect();
+                plan.groups.iter().map(|group| convert::spectral_ghosts(ghosts, plan, &group.members)).collect();
             let groups: Vec<_> = (plan.groups.iter().zip(&spectral))
                 .map(|(group, ghosts)| SpectrumGroup {
                     bell: group.bell.shape().shader(),
@@ -139,7 +107,7 @@ impl Renderer {
             let at = offset(frame.window, tile);
             let photo = self.composite.photo(&self.runner, tile.width, tile.height)?;
             self.runner.run("upload", || photo.write(&pixels[at..], stride, tile.width, tile.height));
-            let picture = self.composite.draw(&self.runner, variant(source, settings), &uniforms)?;
+            let picture = self.composite.draw(&self.runner, convert::variant(source, settings), &uniforms)?;
             self.runner.run("readback", || picture.read(&mut pixels[at..], stride, tile.width, tile.height));
             self.runner.device().check("compositing")?;
         }
@@ -167,7 +135,7 @@ impl Renderer {
     pub fn draw(&mut self, frame: Frame, settings: &Settings) -> Result<()> {
         let uniforms = self.start(frame, settings)?;
         let source = self.evaluate(frame, frame.window)?;
-        self.composite.draw(&self.runner, variant(source, settings), &uniforms)?;
+        self.composite.draw(&self.runner, convert::variant(source, settings), &uniforms)?;
         Ok(())
     }
 
@@ -200,7 +168,7 @@ impl Renderer {
         for tile in self.tiles(frame.window) {
             let source = self.evaluate(frame, tile)?;
             let size = [tile.width, tile.height];
-            let glare = self.composite.draw_glare(&self.runner, variant(source, settings), &uniforms, size)?;
+            let glare = self.composite.draw_glare(&self.runner, convert::variant(source, settings), &uniforms, size)?;
             let at = offset(frame.window, tile);
             self.runner.run("readback", || glare.read(&mut pixels[at..], stride, tile.width, tile.height));
             self.runner.device().check("drawing the glare")?;
@@ -277,14 +245,7 @@ impl Renderer {
     /// Finds the range where the settings ask for it, and gives the composite's uniforms.
     fn start(&mut self, frame: Frame, settings: &Settings) -> Result<Composite> {
         let plan = self.plan()?;
-        let rgb = |v: [f64; 3], w: f64| [v[0] as f32, v[1] as f32, v[2] as f32, w as f32];
-        let uniforms = Composite {
-            scale: rgb(plan.scale, 0.0),
-            light_gain: rgb(settings.light_gain, 1.0),
-            luminance: rgb(settings.luminance, settings.threshold),
-            strength: settings.strength as f32,
-            pad: [0.0; 3],
-        };
+        let uniforms = convert::uniforms(plan, settings);
         if settings.normalize == Normalize::Minmax {
             self.reduce(frame)?;
         }
@@ -327,66 +288,11 @@ impl Renderer {
                 evaluators.grid(runner, &nodes.tile(), spectrum)?;
             }
         }
-        Ok(source(plan.evaluator))
+        Ok(convert::source(plan.evaluator))
     }
-}
-
-/// The GLSL function that an evaluator has readied.
-fn source(evaluator: Evaluator) -> Source {
-    match evaluator {
-        // The Gaussian is the only bell so far; `direct` would run once for each bell.
-        Evaluator::Direct => {
-            Source { evaluator: "\"evaluators/direct.glsl\"", bell: Some(Bell::Gaussian.shape().shader()) }
-        }
-        Evaluator::Series => Source { evaluator: "\"evaluators/series.glsl\"", bell: None },
-        Evaluator::Rows => Source { evaluator: "\"evaluators/rows.glsl\"", bell: None },
-        Evaluator::Grid => Source { evaluator: "\"evaluators/grid.glsl\"", bell: None },
-    }
-}
-
-/// The composite that the settings ask for.
-fn variant(source: Source, settings: &Settings) -> Variant {
-    let normalize = match settings.normalize {
-        Normalize::None => "0",
-        Normalize::Clamp => "1",
-        Normalize::Minmax => "2",
-    };
-    Variant { source, normalize, take_light: settings.light_gain != [1.0; 3] }
 }
 
 /// Where a tile's first pixel stands among the window's.
 fn offset(window: Window, tile: Window) -> usize {
     (tile.y - window.y) as usize * window.width as usize + (tile.x - window.x) as usize
-}
-
-fn spectral_ghosts(ghosts: &[Ghost], plan: &Plan, members: &[u32]) -> Vec<SpectralGhost> {
-    let convert = |&index: &u32| {
-        let ghost = &ghosts[index as usize];
-        let size = ghost.size / plan.period;
-        SpectralGhost {
-            phase: [phase(ghost.center.x, plan.period.x), phase(ghost.center.y, plan.period.y)],
-            size: [size.x as f32, size.y as f32],
-            weight: weight(ghost, plan),
-            pad: 0.0,
-        }
-    };
-    members.iter().map(convert).collect()
-}
-
-fn direct_ghosts(ghosts: &[Ghost], plan: &Plan) -> Vec<DirectGhost> {
-    let convert = |&index: &u32| {
-        let ghost = &ghosts[index as usize];
-        let inverse = 1.0 / ghost.size;
-        DirectGhost {
-            center: [ghost.center.x as f32, ghost.center.y as f32],
-            inverse_size: [inverse.x as f32, inverse.y as f32],
-            weight: weight(ghost, plan),
-            pad: 0.0,
-        }
-    };
-    plan.groups.iter().flat_map(|group| &group.members).map(convert).collect()
-}
-
-fn weight(ghost: &Ghost, plan: &Plan) -> [f32; 3] {
-    [0, 1, 2].map(|colour| (ghost.radiance[colour] / plan.scale[colour]) as f32)
 }

@@ -107,8 +107,7 @@ impl Evaluators {
         self.profiles(runner, tile.node_phases, tile.steps.map(Some), spectrum)?;
         let [columns, rows] = tile.node_phases.map(|phases| phases.len() as u32);
         let lattice = self.lattice.get(device, Texel::Rgba, columns, rows)?;
-        // Here `field` draws the lattice; elsewhere it draws the picture.
-        runner.draw("field.frag", &[("EVALUATOR", "\"evaluators/rows.glsl\"")], lattice, 0)?;
+        runner.draw("lattice.frag", &[("EVALUATOR", "\"evaluators/rows.glsl\"")], lattice, 0)?;
 
         lattice.bind(LATTICE);
         // Three texels for each cell, of which there are three fewer than nodes.

@@ -32,6 +32,7 @@ const SOURCES: &[(&str, &str)] = &sources![
     "field.frag",
     "fullscreen.vert",
     "harmonics.frag",
+    "lattice.frag",
     "probe.frag",
     "profiles.frag",
     "range.frag",

@@ -8,7 +8,7 @@ use bytemuck::Pod;
 use super::composite::Composite;
 use super::context::{Backend, Device};
 use super::harmonics::Harmonics;
-use super::layout::{Binding, DirectGhost, GHOSTS, HARMONICS_X, KNOTS_X, Knot, PARTIALS, PASS, SpectralGhost};
+use super::layout::{Binding, DirectGhost, EVALUATOR, GHOSTS, HARMONICS_X, Knots, PARTIALS, PASS, SpectralGhost};
 use super::resource::Buffer;
 use super::runner::Runner;
 use super::shader::{self, Program};
@@ -123,20 +123,14 @@ fn shaders_read_direct_ghosts_as_they_are_written() {
 
 #[test]
 fn shaders_read_knots_as_they_are_written() {
-    let knots = [Knot { first: 3, fraction: 0.25 }, Knot { first: 5, fraction: 0.75 }];
-    let word =
-        |index: usize| [format!("knots_x[{index}].first"), format!("floatBitsToUint(knots_x[{index}].fraction)")];
+    let knots = [Knots { start: [1, 2], pitch: [3, 4] }, Knots { start: [5, 6], pitch: [7, 8] }];
     let view = View {
-        declarations: vec![
-            declaration("shared/bspline.glsl", "struct Knot {"),
-            declaration("evaluators/grid.glsl", "layout(std430, binding = BINDING_KNOTS_X)"),
-        ],
-        uniform: false,
-        binding: KNOTS_X,
-        words: [word(0), word(1)].concat(),
+        declarations: vec![declaration("shared/knots.glsl", "layout(std140, binding = BINDING_EVALUATOR)")],
+        uniform: true,
+        binding: EVALUATOR,
+        words: ["knots_x", "knots_y"].map(|name| components(name, 4, false)).concat(),
     };
-    let expected = [3, 0.25f32.to_bits(), 5, 0.75f32.to_bits()];
-    on_each_backend(|device| assert_eq!(view.echo(device, &knots), expected));
+    on_each_backend(|device| assert_eq!(view.echo(device, &knots), [1, 2, 3, 4, 5, 6, 7, 8]));
 }
 
 #[test]
@@ -162,17 +156,16 @@ fn shaders_read_the_uniforms_of_the_composite_as_they_are_written() {
 
 #[test]
 fn an_echo_of_other_fields_is_not_what_was_written() {
-    let knots = [Knot { first: 3, fraction: 0.25 }];
+    let knots = [Knots { start: [1, 2], pitch: [3, 4] }, Knots { start: [5, 6], pitch: [7, 8] }];
     let view = View {
         declarations: vec![
-            "struct Knot { float fraction; uint first; };".into(),
-            declaration("evaluators/grid.glsl", "layout(std430, binding = BINDING_KNOTS_X)"),
+            "layout(std140, binding = BINDING_EVALUATOR) uniform Knots { uvec4 knots_y; uvec4 knots_x; };".into(),
         ],
-        uniform: false,
-        binding: KNOTS_X,
-        words: vec!["knots_x[0].first".into(), "floatBitsToUint(knots_x[0].fraction)".into()],
+        uniform: true,
+        binding: EVALUATOR,
+        words: ["knots_x", "knots_y"].map(|name| components(name, 4, false)).concat(),
     };
-    on_each_backend(|device| assert_eq!(view.echo(device, &knots), [0.25f32.to_bits(), 3]));
+    on_each_backend(|device| assert_eq!(view.echo(device, &knots), [5, 6, 7, 8, 1, 2, 3, 4]));
 }
 
 /// The largest error of cos and sin of n times each phase, against f64, of the phases as they are.

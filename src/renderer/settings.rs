@@ -1,0 +1,41 @@
+//! What a person sets about the picture.
+
+/// How the field's values become glare.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, clap::ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Normalize {
+    /// As they are: physical.
+    #[default]
+    None,
+    /// Clamped to 0..1.
+    Clamp,
+    /// Stretched so that the smallest over the picture becomes 0 and the largest 1, all colours alike; the prototype's.
+    Minmax,
+}
+
+/// What a person sets about the picture; the field does not depend on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// What the glare is multiplied by; 0 leaves the photo as it is.
+    pub strength: f64,
+    /// How the field's values become glare.
+    pub normalize: Normalize,
+    /// What a light keeps of itself, RGB; 1 unless light is taken from the photo.
+    pub light_gain: [f64; 3],
+    /// The luminance from which on a pixel is a light.
+    pub threshold: f64,
+    /// Weights of R, G and B in luminance.
+    pub luminance: [f64; 3],
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            strength: 1.0,
+            normalize: Normalize::None,
+            light_gain: [1.0; 3],
+            threshold: f64::INFINITY,
+            luminance: [0.2126, 0.7152, 0.0722],
+        }
+    }
+}
