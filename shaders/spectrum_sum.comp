@@ -17,12 +17,13 @@ void main() {
         return;
     }
     uvec2 modes = gl_NumWorkGroups.xy * gl_WorkGroupSize.xy;
+    float kappa = (mode.x == 0u ? 1.0 : 2.0) * (mode.y == 0u ? 1.0 : 2.0);
     uint term = 3u * (offsets[mode.x] + mode.y);
     for (uint colour = 0u; colour < 3u; ++colour) {
         vec4 sum = vec4(0.0);
         for (uint slice = 0u; slice < slices; ++slice) {
             sum += partials[3u * ((slice * modes.y + mode.y) * modes.x + mode.x) + colour];
         }
-        terms[term + colour] += kappa(mode) * sum;
+        terms[term + colour] += kappa * sum;
     }
 }

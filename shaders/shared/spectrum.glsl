@@ -15,8 +15,3 @@ layout(std430, binding = BINDING_OFFSETS) readonly buffer Offsets {
 uint term_count(uint n) {
     return offsets[n + 1u] - offsets[n];
 }
-
-// The weight that a mode has in the series.
-float kappa(uvec2 mode) {
-    return (mode.x == 0u ? 1.0 : 2.0) * (mode.y == 0u ? 1.0 : 2.0);
-}

@@ -10,8 +10,8 @@ const TILE: u32 = 8;
 /// A slice is at least this many ghosts: fewer would cost more in summing slices than they win in parallel.
 const SHORTEST_SLICE: usize = 128;
 /// And at most this many: a longer one would need more rounds of its loops than Mesa's software renderer runs (65535;
-/// 65 for each 32 ghosts) before it ends them without a word.
-const LONGEST_SLICE: usize = 1 << 14;
+/// 49 for each 32 ghosts) before it ends them without a word.
+const LONGEST_SLICE: usize = 1 << 15;
 /// And there are at most this many slices.
 const MOST_SLICES: usize = 64;
 /// Room for the slices' sums, in vec4s: 32 MiB.
@@ -93,7 +93,7 @@ impl Spectrum {
         let slices = group.ghosts.len().div_ceil(slice_length) as u32;
 
         self.ghosts.store(group.ghosts)?;
-        if slices > 1 && self.partials.length() < slices as usize * vectors {
+        if self.partials.length() < slices as usize * vectors {
             self.partials = Buffer::new(runner.device(), slices as usize * vectors)?;
         }
         self.ghosts.bind_storage(GHOSTS);
@@ -104,9 +104,6 @@ impl Spectrum {
         self.uniforms.bind_uniform(PASS);
         let bell = format!("\"{}\"", group.bell);
         runner.dispatch("spectrum.comp", &[("BELL", &bell)], [tiles[0], tiles[1], slices])?;
-        if slices == 1 {
-            return Ok(());
-        }
         self.uniforms.store(&[[n, m, slices, 0]])?;
         self.uniforms.bind_uniform(PASS);
         runner.dispatch("spectrum_sum.comp", &[], [tiles[0], tiles[1], 1])
