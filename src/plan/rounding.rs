@@ -1,5 +1,7 @@
 //! What f32 costs.
 
+use glam::DVec2;
+
 use super::Evaluator;
 use super::weigh::Weighed;
 use crate::scene::Ghost;
@@ -16,19 +18,29 @@ fn per_weight(evaluator: Evaluator) -> f64 {
     }
 }
 
-/// `direct` has positions in f32, so a bell far from the origin shifts by some roundings of its centre: the bell's
-/// steepest slope, exp(-1/2) of its size, times half a rounding of the centre and two and a half of the pixel's, which
-/// is what a division in GLSL may be off by.
-const PER_CENTER: f64 = 0.607 * 3.0 * f32::EPSILON as f64;
+/// `direct` has positions in f32, so a bell far from the origin shifts: by half a rounding of its centre, and two and a
+/// half of the pixel's, which is what a division in GLSL may be off by.
+const PER_CENTER: f64 = 3.0 * f32::EPSILON as f64;
 
 /// A bound of the rounding error, relative to the field's largest value.
 pub(super) fn bound(ghosts: &[Ghost], weighed: &Weighed, evaluator: Evaluator) -> f64 {
-    let weight = weighed.weights.iter().sum::<f64>().max(1.0);
-    let shifts: f64 = if evaluator == Evaluator::Direct {
-        let shift = |ghost: &Ghost| (PER_CENTER * (ghost.center / ghost.size).abs().element_sum()).min(1.0);
-        ghosts.iter().zip(&weighed.weights).filter(|(_, w)| **w > 0.0).map(|(ghost, w)| w * shift(ghost)).sum()
-    } else {
-        0.0
-    };
-    per_weight(evaluator) * weight + shifts
+    if evaluator != Evaluator::Direct {
+        return per_weight(evaluator) * weighed.weights.iter().sum::<f64>().max(1.0);
+    }
+    let kept = ghosts.iter().zip(&weighed.nearest).zip(&weighed.weights).filter(|(_, weight)| **weight > 0.0);
+    let sum: f64 = kept.map(|((ghost, &nearest), weight)| weight * direct(ghost, nearest.abs())).sum();
+    sum.max(per_weight(evaluator))
+}
+
+/// What one bell of peak 1 is off by in the direct sum, at most: unlike a series, it is as small as the bell itself at
+/// the nearest pixel, in which a rounding of the exponent counts as often as the exponent is large.
+fn direct(ghost: &Ghost, nearest: DVec2) -> f64 {
+    let shape = ghost.bell.shape();
+    let value = shape.value(nearest);
+    // The steepest that exp(-d^2/2) is from `nearest` on: at a distance of 1, or where it begins.
+    let slope = |d: f64| d.max(1.0) * shape.factor(d.max(1.0));
+    let shift = PER_CENTER * (ghost.center / ghost.size).abs();
+    let shifted =
+        shift.x * slope(nearest.x) * shape.factor(nearest.y) + shift.y * slope(nearest.y) * shape.factor(nearest.x);
+    per_weight(Evaluator::Direct) * value * (1.0 + 0.5 * nearest.length_squared()) + shifted.min(1.0)
 }

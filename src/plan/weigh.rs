@@ -22,6 +22,8 @@ pub(super) struct Weighed {
     pub peaks: Vec<[i32; 2]>,
     /// For each ghost its peak in units of the scale, the strongest colour; 0 for those that are dropped.
     pub weights: Vec<f64>,
+    /// For each ghost how far the nearest pixel is from its centre, in sizes.
+    pub nearest: Vec<DVec2>,
     /// How many are dropped, and at most how much that changes at any pixel.
     pub dropped: usize,
     pub dropped_error: f64,
@@ -40,18 +42,13 @@ pub(super) fn weigh(ghosts: &[Ghost], request: &Request) -> Weighed {
         }
     }
     // A colour of which nothing reaches the picture, or less than f32 can tell beside the others, is held against the
-    // others' scale: nothing is not to be computed to a thousandth of itself.
+    // others' scale: nothing is not to be computed to a thousandth of itself. Where that is so for all of them, what
+    // the ghosts are at their centres is the scale.
     let largest = scale.iter().fold(0.0f64, |a, &b| a.max(b));
-    let floor = if largest > 0.0 { largest * 1e-30 } else { 1.0 };
-    let scale = scale.map(|value| {
-        if value > floor {
-            value
-        } else if largest > 0.0 {
-            largest
-        } else {
-            1.0
-        }
-    });
+    let peak = ghosts.iter().flat_map(|ghost| ghost.radiance).fold(0.0f64, |a, b| a.max(b.abs()));
+    let nothing = 1e-30 * largest.max(peak);
+    let instead = [largest, peak].into_iter().find(|&value| value > nothing).unwrap_or(1.0);
+    let scale = scale.map(|value| if value > nothing { value } else { instead });
 
     let mut weights: Vec<f64> = ghosts.iter().map(|ghost| peak_weight(ghost, scale)).collect();
     let reached: Vec<f64> = ghosts
@@ -61,7 +58,7 @@ pub(super) fn weigh(ghosts: &[Ghost], request: &Request) -> Weighed {
         .map(|((ghost, &offset), w)| w * ghost.bell.shape().value(offset))
         .collect();
     let (dropped, dropped_error) = drop_faint(&mut weights, &reached, share::DROPPED * request.tolerance);
-    Weighed { scale, peaks, weights, dropped, dropped_error }
+    Weighed { scale, peaks, weights, nearest, dropped, dropped_error }
 }
 
 fn peak_weight(ghost: &Ghost, scale: [f64; 3]) -> f64 {

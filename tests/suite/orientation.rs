@@ -1,0 +1,79 @@
+//! Rows count from the top, columns from the left, and a window is a crop of the picture.
+
+use vglare::frame::{Frame, Window};
+use vglare::plan::Evaluator;
+use vglare::reference::direct_at;
+use vglare::scene::Ghost;
+
+use crate::support::check::within;
+use crate::support::{bits, glare, on_each_backend, plan_with, rgb, scenes};
+
+const FRAME: Frame = Frame { width: 97, height: 61, window: Window { x: 0, y: 0, width: 97, height: 61 } };
+
+/// Red top right, blue bottom left, each on the centre of a pixel.
+fn asymmetric() -> [Ghost; 2] {
+    let at = |i, j| FRAME.position(i, j).to_array();
+    [scenes::one(at(80.0, 9.0), 0.2, [1.0, 0.0, 0.0]), scenes::one(at(13.0, 50.0), 0.15, [0.0, 0.0, 2.0])]
+}
+
+fn brightest(pixels: &[[f32; 4]], colour: usize) -> [usize; 2] {
+    let largest = (0..pixels.len()).max_by(|&a, &b| pixels[a][colour].total_cmp(&pixels[b][colour])).unwrap();
+    [largest % FRAME.width as usize, largest / FRAME.width as usize]
+}
+
+#[test]
+fn a_ghost_is_brightest_where_its_centre_is() {
+    on_each_backend(|backend, renderer| {
+        for evaluator in Evaluator::ALL {
+            let plan = plan_with(&asymmetric(), FRAME, 1e-4, evaluator);
+            let pixels = glare(renderer, &asymmetric(), &plan, FRAME);
+            assert_eq!(brightest(&pixels, 0), [80, 9], "{backend}, {evaluator}: red");
+            assert_eq!(brightest(&pixels, 2), [13, 50], "{backend}, {evaluator}: blue");
+            assert_eq!(renderer.probe(FRAME, &[[80, 9]]).unwrap()[0][0] as f32, pixels[9 * 97 + 80][0]);
+        }
+    });
+}
+
+/// Windows within the picture, across its edges, and beside it.
+const WINDOWS: [Window; 4] = [
+    Window { x: 20, y: 7, width: 33, height: 20 },
+    Window { x: -9, y: -5, width: 30, height: 17 },
+    Window { x: 70, y: 40, width: 40, height: 35 },
+    Window { x: 99, y: -30, width: 8, height: 12 },
+];
+
+#[test]
+fn a_window_is_a_crop_of_the_picture() {
+    // A larger window that holds them all stands for the picture.
+    let whole = FRAME.with_window(Window { x: -20, y: -40, width: 140, height: 130 });
+    on_each_backend(|backend, renderer| {
+        for evaluator in [Evaluator::Direct, Evaluator::Series, Evaluator::Rows] {
+            let plan = plan_with(&asymmetric(), whole, 1e-3, evaluator);
+            let all = glare(renderer, &asymmetric(), &plan, whole);
+            for window in WINDOWS {
+                let part = glare(renderer, &asymmetric(), &plan, FRAME.with_window(window));
+                let first = |j: u32| ((window.y + 40 + j as i32) * 140 + window.x + 20) as usize;
+                let crop: Vec<_> =
+                    (0..window.height).flat_map(|j| &all[first(j)..][..window.width as usize]).copied().collect();
+                assert_eq!(bits(&part), bits(&crop), "{backend}, {evaluator}, {window:?}");
+            }
+        }
+    });
+}
+
+// The lattice of `grid` hangs from the window's corner, so bits may differ; the promise may not.
+#[test]
+fn a_window_keeps_the_promise_of_its_own_plan() {
+    on_each_backend(|backend, renderer| {
+        for (window, evaluator) in WINDOWS.into_iter().flat_map(|window| Evaluator::ALL.map(|each| (window, each))) {
+            let frame = FRAME.with_window(window);
+            // Wide enough to be seen from every window.
+            let ghosts = asymmetric().map(|ghost| Ghost { size: 8.0 * ghost.size, ..ghost });
+            let plan = plan_with(&ghosts, frame, 1e-3, evaluator);
+            let pixels = scenes::every_pixel(frame);
+            let exact = direct_at(&ghosts, &scenes::positions(frame, &pixels));
+            let actual = rgb(&glare(renderer, &ghosts, &plan, frame));
+            within(plan.predicted.total(), &format!("{backend}, {evaluator}, {window:?}"), &pixels, &exact, &actual);
+        }
+    });
+}

@@ -1,0 +1,53 @@
+//! What the tests of the numerics share: seeded scenes, renderers on every backend, and checks that say what was worst.
+
+pub mod check;
+pub mod scenes;
+
+use vglare::frame::Frame;
+use vglare::gpu::{Backend, Device};
+use vglare::plan::{Evaluator, Plan, Request, plan};
+use vglare::renderer::{Renderer, Settings};
+use vglare::scene::Ghost;
+
+/// Runs `test` once on each backend, each with a thread and a context of its own: a context is current on one thread,
+/// and a thread has one current context.
+///
+/// Fails where a backend gives no context: a machine without GL has not run these tests.
+pub fn on_each_backend<T: Send>(test: impl Fn(Backend, &mut Renderer) -> T + Sync) -> Vec<T> {
+    Backend::ALL.into_iter().map(|backend| on_backend(backend, |renderer| test(backend, renderer))).collect()
+}
+
+/// Runs `test` with a fresh renderer of one backend.
+pub fn on_backend<T: Send>(backend: Backend, test: impl FnOnce(&mut Renderer) -> T + Send) -> T {
+    let run = || {
+        let device = Device::open(&[backend]).unwrap_or_else(|error| panic!("these tests need GL: {error}"));
+        test(&mut Renderer::new(&device).unwrap())
+    };
+    let name = format!("{} on {backend}", std::thread::current().name().unwrap_or("a test"));
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().name(name).spawn_scoped(scope, run).unwrap();
+        thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
+}
+
+/// The plan of one evaluator that leaves everything else to vglare.
+pub fn plan_with(ghosts: &[Ghost], frame: Frame, tolerance: f64, evaluator: Evaluator) -> Plan {
+    let request = Request { evaluator: Some(evaluator), ..Request::new(frame, tolerance) };
+    plan(ghosts, &request).unwrap_or_else(|error| panic!("{evaluator} at {tolerance:e}: {error}"))
+}
+
+/// The glare alone, at every pixel of the frame's window.
+pub fn glare(renderer: &mut Renderer, ghosts: &[Ghost], plan: &Plan, frame: Frame) -> Vec<[f32; 4]> {
+    renderer.set_scene(ghosts, plan).unwrap();
+    renderer.glare(frame, &Settings::default()).unwrap()
+}
+
+/// Pixels as bits: what is the same here is the same, NaN and the sign of zero included.
+pub fn bits(pixels: &[[f32; 4]]) -> Vec<[u32; 4]> {
+    pixels.iter().map(|pixel| pixel.map(f32::to_bits)).collect()
+}
+
+/// The red, green and blue of pixels in f64.
+pub fn rgb(pixels: &[[f32; 4]]) -> Vec<[f64; 3]> {
+    pixels.iter().map(|&[r, g, b, _]| [r, g, b].map(f64::from)).collect()
+}
