@@ -1,7 +1,7 @@
 // Where pixels lie between the lattice's nodes.
 //
 // In integers: no place is off by more than the last bit, every tile gives a pixel the same place, and there is no table
-// to look up, which on Mesa's software renderer would cost more than the interpolation.
+// to look up, which on Mesa's software renderer would cost half as much as the interpolation itself.
 
 struct Knot {
     int first;      // of the four nodes

@@ -14,11 +14,12 @@ mod nanoseconds {
     pub const HARMONIC: f64 = 2.8;
     /// One term on the way to a row's profiles: `rows`, N = 57.
     pub const PROFILE: f64 = 7.0;
-    /// One cell of the lattice stretched to one row: `grid`, 201 cells (18) and 158 (36).
+    /// One cell of the lattice stretched to one row: `grid`, K = 1000 (25) and 45 (36).
     pub const STRIP: f64 = 27.0;
-    /// One interpolation at one pixel: `grid`, the same two (6.5 and 8.4).
+    /// One interpolation at one pixel: `grid`, the same two (7.3 and 8.4).
     pub const INTERPOLATION: f64 = 7.5;
-    /// One term of one ghost: K = 45 (5.2) and 1000 (4.3); at N = M = 10 half of each tile of modes is idle (16).
+    /// One term of one ghost, roughly: K = 1000 (3 to 8, with what else the machine did) and, at N = M = 10 where half
+    /// of the tiles' modes are idle, K = 100,000 (16).
     pub const SPECTRUM: f64 = 6.0;
     /// Starting a pass: what the smallest take.
     pub const PASS: f64 = 100_000.0;

@@ -148,7 +148,7 @@ mod share {
     /// Of `series` and `rows`.
     pub const TRUNCATION: f64 = 0.9;
     /// Of `grid`, which has both. The degree grows with the logarithm of its part only, the lattice with the fourth root
-    /// of its own: so interpolation gets most. Between 0.1 and 0.25 for the former the frame's time is flat.
+    /// of its own: so interpolation gets most.
     pub const TRUNCATION_OF_GRID: f64 = 0.15;
     pub const INTERPOLATION: f64 = 0.75;
 }
