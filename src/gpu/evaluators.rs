@@ -15,10 +15,6 @@ use crate::{Error, Result};
 /// `direct` sums this many ghosts in a round of its loop; as in `evaluators/direct.glsl`.
 const STEP: usize = 8;
 
-/// Rounds of a loop that Mesa's software renderer runs for one pixel, all loops taken together; then it ends them
-/// without a word. Drivers of real GPUs have no such limit.
-const MOST_ROUNDS: usize = 65535;
-
 /// A lattice over one tile, and where the tile's pixels lie on it.
 pub(crate) struct LatticeTile<'a> {
     /// Phases of the lattice's columns and rows, in 2⁻³² of a period.
@@ -144,7 +140,7 @@ impl Evaluators {
 
 /// Refuses a loop that the software renderer would end too early: a wrong picture without any error.
 fn within_rounds(runner: &Runner, rounds: usize, evaluator: &str, count: usize, what: &str) -> Result<()> {
-    if runner.device().info().software && rounds > MOST_ROUNDS {
+    if runner.device().info().loop_rounds().is_some_and(|most| rounds > most) {
         return Err(Error::Gl(format!(
             "the software renderer cannot go through {count} {what} for each pixel, as `{evaluator}` would; \
              `rows` and `grid` need not"

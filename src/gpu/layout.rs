@@ -83,15 +83,15 @@ pub(crate) struct DirectGhost {
 }
 const _: () = assert!(size_of::<DirectGhost>() == 32);
 
-/// Where the pixels along one axis lie between the lattice's nodes: pixel i at `start + i * pitch`, counted in nodes from
-/// the second that the tile has.
+/// Where the pixels along one axis lie between the lattice's nodes: pixel i at `start + i * pitch`, counted in 2⁻²⁰ of a
+/// node from the second node that the tile has.
 ///
-/// Fixed-point numbers: whole nodes, then 2⁻³² of one. So every tile gives a pixel the same place, bit for bit, and a
-/// shader needs no table.
+/// Integers, so that every tile gives a pixel the same place, bit for bit, and a shader needs no table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct Knots {
-    pub start: [u32; 2],
-    pub pitch: [u32; 2],
+    pub start: u32,
+    pub pitch: u32,
+    pub pad: [u32; 2],
 }
 const _: () = assert!(size_of::<Knots>() == 16);

@@ -8,10 +8,14 @@ use super::terms::Group;
 use super::{Plan, periodised_peak};
 use crate::frame::Frame;
 use crate::series::spline_error;
+use crate::{Error, Result};
 
 /// Nodes a half wave of the highest harmonic that are tried: from barely enough to plenty.
 const SPARSEST: f64 = 1.02;
 const DENSEST: f64 = 64.0;
+
+/// Most nodes along an axis: places on the lattice are kept in 32 bits, 12 of them for whole nodes.
+pub const MOST_NODES: u32 = 4000;
 
 /// A lattice over the window of a picture. Node (1, 1) lies on the top left pixel; nodes count rightwards and downwards.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -28,7 +32,10 @@ pub struct Lattice {
 }
 
 /// The coarsest lattice whose interpolation stays within the budget.
-pub(super) fn coarsest(plan: &Plan, frame: Frame, budget: f64) -> Lattice {
+///
+/// # Errors
+/// [`Error::Plan`] where it would have more than [`MOST_NODES`] along an axis.
+pub(super) fn coarsest(plan: &Plan, frame: Frame, budget: f64) -> Result<Lattice> {
     let (low, high) = frame.bounds();
     let extent = high - low;
     let axis = |degree: u32, period: f64, extent: f64, size: fn(DVec2) -> f64, which: usize| {
@@ -60,7 +67,13 @@ pub(super) fn coarsest(plan: &Plan, frame: Frame, budget: f64) -> Lattice {
         error: 0.0,
     };
     lattice.error = error(plan, &lattice);
-    lattice
+    if lattice.nodes.iter().any(|&nodes| nodes > MOST_NODES) {
+        let [x, y] = lattice.nodes;
+        return Err(Error::Plan(format!(
+            "a lattice of {x} x {y} nodes is beyond {MOST_NODES} a side; rows needs none"
+        )));
+    }
+    Ok(lattice)
 }
 
 /// A bound of the interpolation's error: of each axis, and of one on top of the other.

@@ -18,7 +18,7 @@ use crate::series::Bell;
 use crate::{Error, Result};
 
 pub use cost::Cost;
-pub use lattice::Lattice;
+pub use lattice::{Lattice, MOST_NODES};
 pub use terms::Group;
 
 use weigh::Weighed;
@@ -71,12 +71,22 @@ pub struct Request {
     pub evaluator: Option<Evaluator>,
     /// The most terms that the device can hold.
     pub most_terms: usize,
+    /// Rounds that the renderer runs a shader's loops for one pixel.
+    pub loop_rounds: usize,
 }
 
 impl Request {
     /// A request that leaves everything but the tolerance to the plan.
     pub fn new(frame: Frame, tolerance: f64) -> Self {
-        Self { frame, tolerance, period: None, degree: None, evaluator: None, most_terms: 2 << 20 }
+        Self {
+            frame,
+            tolerance,
+            period: None,
+            degree: None,
+            evaluator: None,
+            most_terms: 2 << 20,
+            loop_rounds: usize::MAX,
+        }
     }
 }
 
@@ -213,6 +223,15 @@ fn candidate(ghosts: &[Ghost], weighed: &Weighed, request: &Request, evaluator: 
     if evaluator != Evaluator::Direct {
         plan_series(&mut plan, ghosts, weighed, request, usable)?;
     }
+    // `direct` takes eight ghosts a round, and a few rounds more to gather them.
+    let rounds = match evaluator {
+        Evaluator::Direct => plan.ghosts() / 7,
+        Evaluator::Series => plan.terms + plan.counts.len(),
+        Evaluator::Rows | Evaluator::Grid => 0,
+    };
+    if rounds > request.loop_rounds {
+        return Err(Error::Plan(format!("{evaluator} would need more rounds of a loop than this renderer runs")));
+    }
     plan.costs = vec![cost::estimate(&plan, request)];
     Ok(plan)
 }
@@ -240,7 +259,7 @@ fn plan_series(plan: &mut Plan, ghosts: &[Ghost], weighed: &Weighed, request: &R
     plan.predicted.truncation = terms::error(&plan.groups, plan.period, &plan.counts);
 
     if grid {
-        let lattice = lattice::coarsest(plan, request.frame, usable * share::INTERPOLATION);
+        let lattice = lattice::coarsest(plan, request.frame, usable * share::INTERPOLATION)?;
         plan.predicted.interpolation = lattice.error;
         plan.lattice = Some(lattice);
     }

@@ -81,7 +81,7 @@ impl Nodes {
     }
 }
 
-/// Nodes from pixel to pixel, in 2⁻³² of a node.
+/// Nodes from pixel to pixel, in 2⁻²⁰ of a node.
 #[derive(Clone, Copy)]
 struct Pitch(u64);
 
@@ -95,21 +95,24 @@ struct Span {
 }
 
 impl Pitch {
+    /// Bits after the point: the 12 before it suffice for [`crate::plan::MOST_NODES`].
+    const BITS: u32 = 20;
+
+    /// Rounded so that the nodes lie closer together than the plan wants, never farther apart.
     fn new(nodes: f64) -> Self {
-        Self(((nodes * 2f64.powi(32)).round() as u64).max(1))
+        Self(((nodes * f64::from(1 << Self::BITS)).ceil() as u64).max(1))
     }
 
     fn nodes(self) -> f64 {
-        self.0 as f64 / 2f64.powi(32)
+        self.0 as f64 / f64::from(1 << Self::BITS)
     }
 
     /// For `count` pixels, the first of them `from` pixels after the lattice's origin.
     fn span(self, from: i32, count: u32) -> Span {
         let place = |index: u32| (from as u64 + u64::from(index)) * self.0;
-        let first = place(0) >> 32;
-        let last = place(count - 1) >> 32;
-        let halves = |fixed: u64| [(fixed >> 32) as u32, fixed as u32];
-        let knots = Knots { start: halves(place(0) - (first << 32)), pitch: halves(self.0) };
+        let first = place(0) >> Self::BITS;
+        let last = place(count - 1) >> Self::BITS;
+        let knots = Knots { start: (place(0) - (first << Self::BITS)) as u32, pitch: self.0 as u32, pad: [0; 2] };
         Span { first, nodes: (last - first) as u32 + 4, knots }
     }
 }
@@ -144,9 +147,9 @@ mod tests {
         let tile = Window { x: 200, y: 113, width: 77, height: 64 };
         let part = Nodes::new(&lattice, DVec2::new(5.0, 4.0), frame, tile);
         let place = |knots: Knots, index: u64| {
-            let fixed = |[whole, part]: [u32; 2]| (u64::from(whole) << 32) + u64::from(part);
-            let place = fixed(knots.start) + index * fixed(knots.pitch);
-            ((place >> 32) as usize, place as u32)
+            // In u32, like the shader.
+            let place = knots.start.wrapping_add((index as u32).wrapping_mul(knots.pitch));
+            ((place >> Pitch::BITS) as usize, place & ((1 << Pitch::BITS) - 1))
         };
         for (axis, from, count) in [(0, 200, 77), (1, 113, 64)] {
             for index in 0..count {

@@ -149,6 +149,7 @@ impl Run<'_> {
             period: args.accuracy.period.or(scene.period),
             degree: args.accuracy.degree.map(|degree| degree.0).or(scene.degree),
             evaluator: args.accuracy.evaluator,
+            loop_rounds: device.info().loop_rounds().unwrap_or(usize::MAX),
             most_terms: (device.info().limits.storage_block / 48) as usize,
             ..Request::new(frame, args.accuracy.tolerance)
         };

@@ -78,6 +78,14 @@ pub struct Info {
     pub limits: Limits,
 }
 
+impl Info {
+    /// Rounds that the renderer runs a shader's loops for one pixel, all of them taken together, where that is limited:
+    /// Mesa's software renderer then ends them without a word.
+    pub fn loop_rounds(&self) -> Option<usize> {
+        self.software.then_some(65535)
+    }
+}
+
 /// The driver's limits that the passes meet.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
 pub struct Limits {
