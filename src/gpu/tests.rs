@@ -177,7 +177,8 @@ fn harmonic_error(runner: &Runner, phases: &[u32], degree: u32, step: Option<u32
     for (index, value) in values.chunks_exact(2).enumerate() {
         let (n, phase) = ((index / phases.len()) as u32, phases[index % phases.len()]);
         let turns = |phase: u32| TAU * f64::from(n.wrapping_mul(phase)) / 2f64.powi(32);
-        let gain = step.map_or(1.0, |step| 3.0 / (2.0 + turns(step).cos()));
+        let half = step.map_or(0.0, |step| 0.5 * turns(step));
+        let gain = if half > 0.0 { (half / half.sin()).powi(4) } else { 1.0 };
         let (sin, cos) = turns(phase).sin_cos();
         for (got, exact) in value.iter().zip([gain * cos, gain * sin]) {
             assert!(got.is_finite());
@@ -202,8 +203,8 @@ fn harmonics_are_as_exact_as_f32_for_every_n() {
         // The polynomials are within 2e-9; the rest is a handful of f32 roundings of values up to 1. It does not grow
         // with n, because n * phase wraps exactly.
         assert!(plain <= 2.5e-7, "{plain:e}");
-        // The gain is 1 to 3 and has roundings of its own.
-        assert!(prefiltered <= 3.0 * 4e-7, "{prefiltered:e}");
+        // The gain is 1 to (pi/2)^4 = 6.1, a fourth power with the roundings of a fourth power.
+        assert!(prefiltered <= 6.1 * 6e-7, "{prefiltered:e}");
     });
 }
 

@@ -40,7 +40,8 @@ fn the_interpolation_bound_holds_for_a_lattice_evaluated_in_f64() {
                 let shape = ghost.bell.shape();
                 let coefficient = |n: u32| shape.coefficient(n, ghost.size.x / plan.period.x);
                 let term = |n: u32| {
-                    let gain = if gained { 3.0 / (2.0 + (f64::from(n) * theta).cos()) } else { 1.0 };
+                    let half = 0.5 * f64::from(n) * theta;
+                    let gain = if gained && n > 0 { (half / half.sin()).powi(4) } else { 1.0 };
                     let weight = if n == 0 { 1.0 } else { 2.0 };
                     gain * weight
                         * coefficient(n)
