@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use comfy_table::{CellAlignment, Table, presets};
 use serde::Serialize;
 
+use super::numbers::not_negative;
 use super::stdout;
 use crate::Result;
 use crate::frame::Frame;
@@ -54,13 +55,6 @@ pub struct FindArgs {
     /// At most so many lights, the brightest
     #[arg(long, value_name = "N", default_value_t = FindOptions::default().max_lights)]
     max_lights: usize,
-}
-
-fn not_negative(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(x) if x.is_finite() && x >= 0.0 => Ok(x),
-        _ => Err("expected a finite number that is not negative".to_owned()),
-    }
 }
 
 impl From<&FindArgs> for FindOptions {

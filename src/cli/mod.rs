@@ -4,6 +4,7 @@ mod apply;
 mod bench;
 mod info;
 mod lights;
+mod numbers;
 mod presets;
 mod progress;
 mod shell;

@@ -12,6 +12,7 @@ use glam::DVec2;
 
 use super::BackendChoice;
 use super::lights::FindArgs;
+use super::numbers::{finite, not_negative};
 use crate::photo::{Depth, ToneMap};
 use crate::plan::Evaluator;
 use crate::renderer::Normalize;
@@ -223,14 +224,6 @@ impl From<ToneMapArg> for ToneMap {
 /// `--degree`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Degree([u32; 2]);
-
-fn finite(text: &str) -> Result<f64, String> {
-    text.parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(|| "expected a finite number".to_owned())
-}
-
-fn not_negative(text: &str) -> Result<f64, String> {
-    finite(text).ok().filter(|&x| x >= 0.0).ok_or_else(|| "expected a finite number that is not negative".to_owned())
-}
 
 fn tolerance(text: &str) -> Result<f64, String> {
     finite(text).ok().filter(|&x| x > 0.0 && x < 1.0).ok_or_else(|| "expected a number between 0 and 1".to_owned())
