@@ -22,6 +22,7 @@ macro_rules! sources {
 /// Every file of `shaders/`.
 const SOURCES: &[(&str, &str)] = &sources![
     "bells/gaussian.glsl",
+    "bells/point.glsl",
     "cells.frag",
     "composite.frag",
     "copy.frag",
