@@ -76,13 +76,18 @@ impl Renderer {
         }
         self.scene = None;
         if plan.evaluator == Evaluator::Direct {
-            self.evaluators.set_ghosts(&self.runner, &convert::direct_ghosts(ghosts, plan))?;
+            let (direct, shapes) = convert::direct_ghosts(ghosts, plan);
+            self.evaluators.set_ghosts(&self.runner, &direct, &shapes)?;
         } else {
             let spectral: Vec<_> =
                 plan.groups.iter().map(|group| convert::spectral_ghosts(ghosts, plan, &group.members)).collect();
-            let groups: Vec<_> = (plan.groups.iter().zip(&spectral))
-                .map(|(group, ghosts)| SpectrumGroup {
-                    coefficients: Coefficients::Factors(group.bell.shape().shader()),
+            let tables: Vec<_> = plan.groups.iter().map(|group| convert::table(plan, group)).collect();
+            let groups: Vec<_> = (plan.groups.iter().zip(&spectral).zip(&tables))
+                .map(|((group, ghosts), table)| SpectrumGroup {
+                    coefficients: match table {
+                        Some(table) => Coefficients::Table(table),
+                        None => Coefficients::Factors(group.bell.shape().shader()),
+                    },
                     ghosts,
                     degree: group.degree,
                 })
@@ -308,7 +313,7 @@ impl Renderer {
                 evaluators.grid(runner, &nodes.tile(), spectrum)?;
             }
         }
-        Ok(convert::source(plan.evaluator))
+        Ok(convert::source(plan))
     }
 }
 

@@ -83,7 +83,8 @@ pub(crate) struct DirectGhost {
     pub inverse_size: [f32; 2],
     /// Radiance, per colour in units of the field's scale.
     pub weight: [f32; 3],
-    pub pad: f32,
+    /// Where its bell's parameters begin; the bell's kind in the highest 8 bits, where there are several.
+    pub bell: u32,
 }
 const _: () = assert!(size_of::<DirectGhost>() == 32);
 

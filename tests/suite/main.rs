@@ -1,5 +1,6 @@
 //! The promises, one module each.
 
+mod bells;
 mod cli;
 mod composite;
 mod evaluators;
