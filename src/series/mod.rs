@@ -21,6 +21,7 @@ mod parabola;
 mod paraboloid;
 mod periodic;
 mod profile;
+pub mod special;
 mod spline;
 mod tails;
 

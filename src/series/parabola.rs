@@ -5,19 +5,10 @@ use std::f64::consts::{PI, SQRT_2, TAU};
 use glam::DVec2;
 
 use super::bell::{Factor, Modes, Shape};
+use super::special::parabola_kernel;
 use super::tails::{copies, summed};
 
 pub(super) struct Parabola;
-
-/// Φ(z) = 3(sin z − z cos z)/z³, with Φ(0) = 1; by its series where the difference would cancel.
-fn phi(z: f64) -> f64 {
-    if z.abs() < 0.7 {
-        let z = z * z;
-        let divisors = [238.0, 180.0, 130.0, 88.0, 54.0, 28.0, 10.0];
-        return divisors.into_iter().fold(1.0, |tail, divisor| 1.0 - z / divisor * tail);
-    }
-    3.0 * (z.sin() - z * z.cos()) / (z * z * z)
-}
 
 impl Parabola {
     /// A bound of |a_n| for sizes from `size` to √2 times it, from |sin z − z cos z| ≤ 1 + z: it falls with n.
@@ -73,7 +64,7 @@ impl Shape for Parabola {
 impl Factor for Parabola {
     /// a_n = (4h/3T) Φ(nωh).
     fn coefficients(&self, highest: u32, size: f64) -> Vec<[f64; 2]> {
-        (0..=highest).map(|n| [4.0 / 3.0 * size * phi(TAU * f64::from(n) * size), 0.0]).collect()
+        (0..=highest).map(|n| [4.0 / 3.0 * size * parabola_kernel(TAU * f64::from(n) * size), 0.0]).collect()
     }
 
     /// The envelope summed, and beyond some harmonic its integral (2T/π²hN)(1 + T/4πhN).
@@ -90,20 +81,5 @@ impl Factor for Parabola {
 
     fn degree(&self, error: f64, size: f64) -> f64 {
         2.2 / (PI * PI * size * error) + 1.0
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn phi_joins_its_series() {
-        for z in [0.699_999, 0.7, 0.700_001] {
-            let direct = 3.0 * (f64::sin(z) - z * f64::cos(z)) / (z * z * z);
-            assert!((phi(z) - direct).abs() < 2e-15, "{z}");
-        }
-        assert_eq!(phi(0.0), 1.0);
-        assert_eq!(phi(0.3), phi(-0.3));
     }
 }

@@ -6,20 +6,10 @@ use std::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 use glam::DVec2;
 
 use super::bell::{Modes, Radial, Shape};
+use super::special::paraboloid_kernel;
 use super::tails::copies;
 
 pub(super) struct Paraboloid;
-
-/// 8 J2(z)/z², with its limit 1 at 0.
-pub(super) fn psi(z: f64) -> f64 {
-    let square = z * z;
-    if z.abs() < 0.5 {
-        // Divisors 4k(k + 2): the series of J2.
-        let divisors = [252.0, 192.0, 140.0, 96.0, 60.0, 32.0, 12.0];
-        return divisors.into_iter().fold(1.0, |tail, divisor| 1.0 - square / divisor * tail);
-    }
-    8.0 * libm::jn(2, z) / square
-}
 
 /// How far the series of a paraboloid of height and radius 1 is off at most if it has all modes below z.
 ///
@@ -71,23 +61,10 @@ impl Shape for Paraboloid {
 impl Radial for Paraboloid {
     /// ĝ(z) = 4π J2(z)/z².
     fn transform(&self, z: f64) -> f64 {
-        FRAC_PI_2 * psi(z)
+        FRAC_PI_2 * paraboloid_kernel(z)
     }
 
     fn beyond(&self, z: f64, _cell: f64) -> f64 {
         cut_off(z)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn psi_joins_its_series() {
-        for z in [0.499_999, 0.5, 0.500_001] {
-            assert!((psi(z) - 8.0 * libm::jn(2, z) / (z * z)).abs() < 3e-15, "{z}");
-        }
-        assert_eq!(psi(0.0), 1.0);
     }
 }

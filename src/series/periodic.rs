@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec2;
 
 use super::bell::{Factor, Modes, Shape};
+use super::special::ive_all;
 use super::tails::summed;
 
 /// The von Mises bell exp(κ (cos ωx − 1)), κ = 1/(ωσ)², along each axis: one lobe a period, the Gaussian of size σ where
@@ -133,7 +134,7 @@ impl Shape for VonMises {
 impl Factor for VonMises {
     /// a_n = exp(−κ) I_n(κ).
     fn coefficients(&self, highest: u32, size: f64) -> Vec<[f64; 2]> {
-        by_samples(highest, samples(highest, size), |x| Self::factor(x, size))
+        ive_all(highest, (TAU * size).powi(-2)).into_iter().map(|mean| [mean, 0.0]).collect()
     }
 
     fn tails(&self, highest: u32, size: f64) -> Vec<f64> {

@@ -9,7 +9,8 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec2;
 
 use super::bell::{Modes, Radial, Shape};
-use super::paraboloid::{cut_off, psi};
+use super::paraboloid::cut_off;
+use super::special::{bessel_j, paraboloid_kernel};
 use super::tails::copies;
 
 /// Most rows of a table.
@@ -199,8 +200,9 @@ impl Radial for Profile {
     /// Twice by parts, with ∫ r² J1(qr) dr = r² J2(qr)/q: the step at the end as a disc, every kink as a paraboloid.
     fn transform(&self, z: f64) -> f64 {
         let end = z * self.radius();
-        let disc = if end < 1e-4 { 0.5 } else { libm::j1(end) / end };
-        let kinks: f64 = self.kinks().map(|(radius, kink)| 0.25 * kink * radius.powi(4) * psi(z * radius)).sum();
+        let disc = if end < 1e-4 { 0.5 } else { bessel_j(1, end) / end };
+        let kinks: f64 =
+            self.kinks().map(|(radius, kink)| 0.25 * kink * radius.powi(4) * paraboloid_kernel(z * radius)).sum();
         TAU * (self.step() * self.radius() * self.radius() * disc + kinks)
     }
 

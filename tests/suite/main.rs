@@ -15,5 +15,6 @@ mod reference;
 mod rounding;
 mod scale;
 mod scene;
+mod special;
 mod support;
 mod tiles;
