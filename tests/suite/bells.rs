@@ -206,7 +206,7 @@ fn every_bell_on_every_evaluator_stays_within_its_prediction() {
             Bell::Gaussian | Bell::VonMises(_) | Bell::SineGaussian(_) => &[1e-2, 1e-4],
             Bell::CosineSquared => &[3e-2, 3e-3],
             Bell::Parabola => &[0.3],
-            Bell::Paraboloid | Bell::Profile(_) => &[0.1, 3e-2],
+            Bell::Paraboloid | Bell::Profile(_) => &[0.2, 0.1],
         };
         keeps_its_promise(&bell.to_string(), &ghosts(std::slice::from_ref(&bell)), tolerances);
     }
