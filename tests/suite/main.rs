@@ -5,6 +5,7 @@ mod composite;
 mod evaluators;
 mod golden;
 mod layers;
+mod numeric;
 mod order;
 mod orientation;
 mod photo;
