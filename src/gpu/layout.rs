@@ -12,6 +12,7 @@ pub(crate) type Binding = (&'static str, u32);
 pub(crate) const PASS: Binding = ("BINDING_PASS", 0);
 /// What an evaluator has beside the pass that asks it.
 pub(crate) const EVALUATOR: Binding = ("BINDING_EVALUATOR", 1);
+pub(crate) const SAMPLES: Binding = ("BINDING_SAMPLES", 2);
 
 /// Shader storage blocks.
 pub(crate) const GHOSTS: Binding = ("BINDING_GHOSTS", 0);
@@ -20,6 +21,8 @@ pub(crate) const SPECTRUM: Binding = ("BINDING_SPECTRUM", 2);
 pub(crate) const OFFSETS: Binding = ("BINDING_OFFSETS", 3);
 pub(crate) const PHASES: Binding = ("BINDING_PHASES", 4);
 pub(crate) const PROBES: Binding = ("BINDING_PROBES", 5);
+pub(crate) const COEFFICIENTS: Binding = ("BINDING_COEFFICIENTS", 6);
+pub(crate) const SUMS: Binding = ("BINDING_SUMS", 7);
 
 /// Texture units.
 pub(crate) const PHOTO: Binding = ("UNIT_PHOTO", 0);
@@ -35,15 +38,18 @@ pub(crate) const RANGE: Binding = ("UNIT_RANGE", 8);
 pub(crate) const WORKBENCH: Binding = ("UNIT_WORKBENCH", 9);
 
 /// Every binding, for the head of every shader.
-pub(crate) const BINDINGS: [Binding; 17] = [
+pub(crate) const BINDINGS: [Binding; 20] = [
     PASS,
     EVALUATOR,
+    SAMPLES,
     GHOSTS,
     PARTIALS,
     SPECTRUM,
     OFFSETS,
     PHASES,
     PROBES,
+    COEFFICIENTS,
+    SUMS,
     PHOTO,
     FIELD,
     HARMONICS_X,
