@@ -10,6 +10,7 @@
 //! the derivations.
 
 mod gaussian;
+pub mod sphere;
 mod spline;
 
 use std::fmt;

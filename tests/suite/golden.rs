@@ -13,17 +13,17 @@ const COEFFICIENTS: &str = include_str!("../golden/gaussian_coeff.json");
 const PERIODISED: &str = include_str!("../golden/gaussian_periodised.json");
 const FIELD: &str = include_str!("../golden/field_gaussian.json");
 
-fn cases(text: &str) -> Vec<Value> {
+pub fn cases(text: &str) -> Vec<Value> {
     let file: Value = serde_json::from_str(text).unwrap();
     file["cases"].as_array().unwrap().clone()
 }
 
 /// The nearest f64 to a number printed in a string.
-fn number(value: &Value) -> f64 {
+pub fn number(value: &Value) -> f64 {
     value.as_str().unwrap().parse().unwrap()
 }
 
-fn count(value: &Value) -> u32 {
+pub fn count(value: &Value) -> u32 {
     value.as_u64().unwrap().try_into().unwrap()
 }
 

@@ -14,5 +14,6 @@ mod reference;
 mod rounding;
 mod scale;
 mod scene;
+mod sphere;
 mod support;
 mod tiles;
