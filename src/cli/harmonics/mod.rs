@@ -54,7 +54,8 @@ pub struct Args {
     #[arg(long, requires = "coefficients")]
     condon_shortley: bool,
 
-    /// Turn the panorama as well, not only its coefficients, and say how far the two are apart
+    /// Turn the panorama as well, not only its coefficients, and say how far the two are apart; takes seconds, and
+    /// minutes at high degrees
     #[arg(long, requires = "rotate")]
     check: bool,
 

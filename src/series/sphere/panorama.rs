@@ -196,7 +196,7 @@ fn rings(grid: Grid, degree: usize, reading: Reading) -> Vec<Vec<Ring>> {
     // Offsets from the row's centre, in rows, and weights.
     let places = match reading {
         // The integrand's highest frequency is degree + 1, because of sin θ.
-        Reading::Areas => gauss_legendre(nodes_for(0.5 * step * (degree + 1) as f64)),
+        Reading::Areas => gauss_legendre(nodes_for(0.5 * step * (degree + 1) as f64, 1e-15)),
         Reading::Samples => vec![(0.0, 2.0)],
     };
     let fejer = if reading == Reading::Samples { fejer(grid.height) } else { Vec::new() };

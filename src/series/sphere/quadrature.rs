@@ -48,11 +48,11 @@ pub fn fejer(n: usize) -> Vec<f64> {
     (0..n).map(weight).collect()
 }
 
-/// The least number of Gauss–Legendre nodes whose mean of cos(κt) over |t| ≤ `half` is off by less than 1e-15, from the
-/// rule's error term; `phase` is κ · half.
-pub(super) fn nodes_for(phase: f64) -> usize {
+/// The least number of Gauss–Legendre nodes whose mean of cos(κt) over |t| ≤ `half` is off by less than `limit`, from
+/// the rule's error term; `phase` is κ · half.
+pub(super) fn nodes_for(phase: f64, limit: f64) -> usize {
     let (mut n, mut error) = (1, phase * phase / 6.0);
-    while error > 1e-15 {
+    while error > limit {
         let k = n as f64;
         // 2^2n n!⁴ / ((2n+1) (2n)!³) phase^2n, from one n to the next.
         error *= 4.0 * (k + 1.0).powi(4) * (2.0 * k + 1.0) / (2.0 * k + 3.0) * phase * phase;
