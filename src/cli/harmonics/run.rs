@@ -173,7 +173,7 @@ impl Panorama {
         let carried = project_turned(self.grid, turned.degree(), rotation, read);
         let carried = turned.difference(&carried);
 
-        let times = (8192 / self.grid.width).max(1);
+        let times = (8192 / self.grid.width).clamp(1, 16);
         let fine = Grid { width: times * self.grid.width, height: times * self.grid.height };
         let mut pixels = vec![[0.0; 3]; self.grid.width * self.grid.height];
         pixels.chunks_exact_mut(self.grid.width).enumerate().for_each(|(row, out)| self.row(row, out));

@@ -16,9 +16,9 @@ impl Coefficients {
     /// If there are fewer eigenvalues than bands.
     pub fn convolved(&self, eigenvalues: &[f64]) -> Self {
         let mut result = self.clone();
-        for l in 0..=self.degree {
+        for (l, eigenvalue) in eigenvalues[..=self.degree].iter().enumerate() {
             for value in &mut result.values[l * l..(l + 1) * (l + 1)] {
-                *value = value.map(|c| c * eigenvalues[l]);
+                *value = value.map(|c| c * eigenvalue);
             }
         }
         result

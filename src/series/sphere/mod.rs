@@ -17,7 +17,8 @@
 //! | `quadrature` | nodes and weights |
 //! | `projection` | functions of direction ↔ coefficients |
 //! | `panorama` | equirectangular pictures ↔ coefficients |
-//! | `rotation` | turned coefficients |
+//! | `rotation` | turned coefficients, by matrices of whole bands |
+//! | `wigner` | turned coefficients of any degree |
 //! | `turned` | coefficients of turned pictures, the long way round |
 //! | `convolution` | zonal kernels, and the irradiance of a matt surface |
 
@@ -29,6 +30,7 @@ mod projection;
 mod quadrature;
 mod rotation;
 mod turned;
+mod wigner;
 
 use glam::DVec3;
 
@@ -38,7 +40,7 @@ pub use convolution::{irradiance_of_nine, lambert, zonal};
 pub use panorama::{Grid, Reading, project_panorama};
 pub use projection::project;
 pub use quadrature::{fejer, gauss_legendre};
-pub use rotation::{Band, each_band, turn};
+pub use rotation::{Band, RECURSION_LIMIT, each_band, turn};
 pub use turned::{project_samples, project_turned};
 
 /// The highest degree that the recurrences are tested for.

@@ -232,9 +232,7 @@ fn column(basis: &Basis, m: usize, rings: &[Vec<Ring>], moments: &[Vec<Moments>]
             }
             let mut total = [0.0; ROWS];
             for state in &states {
-                for lane in 0..ROWS {
-                    total[lane] += state.value[lane];
-                }
+                total.iter_mut().zip(&state.value).for_each(|(total, value)| *total += value);
             }
             for (part, moments) in sums.iter_mut().zip(&moments[m]) {
                 *part += sum(std::array::from_fn(|lane| total[lane] * moments[lane]));
@@ -305,10 +303,9 @@ impl Coefficients {
                 legendre.step(steps[l - m - 1]);
             }
             let [cosine, sine] = [m as isize, -(m as isize)].map(|m| self.values[index(l, m)]);
-            for colour in 0..3 {
-                for lane in 0..ROWS {
-                    waves[colour][lane] += cosine[colour] * legendre.value[lane];
-                    waves[3 + colour][lane] += if m > 0 { sine[colour] * legendre.value[lane] } else { 0.0 };
+            for (waves, share) in waves.chunks_exact_mut(3).zip([cosine, if m > 0 { sine } else { [0.0; 3] }]) {
+                for (wave, share) in waves.iter_mut().zip(share) {
+                    wave.iter_mut().zip(&legendre.value).for_each(|(wave, value)| *wave += share * value);
                 }
             }
         }

@@ -50,7 +50,9 @@ impl Band {
 /// length. O(degree³) time, O(degree²) memory.
 ///
 /// The recursion of Ivanic and Ruedenberg, "Rotation matrices for real spherical harmonics: direct determination by
-/// recursion", Journal of Physical Chemistry 100, 1996, with the corrections of 102, 1998, p. 9099.
+/// recursion", Journal of Physical Chemistry 100, 1996, with the corrections of 102, 1998, p. 9099. Rounding grows with
+/// the band: 3e-15 at l = 20 and 2e-12 at l = 50 are the worst that was seen, 1e-7 at l = 100, and at l = 200
+/// nothing is right. See [`RECURSION_LIMIT`].
 pub fn each_band(rotation: DQuat, degree: usize, mut take: impl FnMut(&Band)) {
     take(&Band { l: 0, values: vec![1.0] });
     let turn = DMat3::from_quat(rotation.normalize());
@@ -111,9 +113,21 @@ fn terms(l: usize, m: isize) -> impl Iterator<Item = (isize, isize, f64)> {
     [(0, m, u), first, second, third, fourth].into_iter().filter(|&(_, _, factor)| factor != 0.0)
 }
 
+/// The highest degree that [`Coefficients::rotated`] leaves to [`each_band`], whose rounding grows.
+pub const RECURSION_LIMIT: usize = 32;
+
 impl Coefficients {
-    /// The coefficients of f(R⁻¹v): what f shows at v, this shows at Rv.
+    /// The coefficients of f(R⁻¹v): what f shows at v, this shows at Rv. `rotation` need not be of unit length.
     pub fn rotated(&self, rotation: DQuat) -> Self {
+        if self.degree <= RECURSION_LIMIT {
+            self.rotated_by_matrices(rotation)
+        } else {
+            self.rotated_by_angles(rotation)
+        }
+    }
+
+    /// [`Coefficients::rotated`] by the matrices of [`each_band`].
+    pub fn rotated_by_matrices(&self, rotation: DQuat) -> Self {
         let mut result = Self::zero(self.degree);
         each_band(rotation, self.degree, |band| {
             let places = band.l * band.l..(band.l + 1) * (band.l + 1);
