@@ -38,7 +38,7 @@ pub struct Args {
     rotate: Option<Angles>,
 
     /// Write the irradiance instead: radiance 1 all round makes π. Degree 2 gives Ramamoorthi and Hanrahan's nine
-    /// coefficients, within a few per cent
+    /// coefficients: within 9.4 % of the strongest, and that only where all light comes from one point
     #[arg(long)]
     irradiance: bool,
 

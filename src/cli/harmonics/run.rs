@@ -19,7 +19,7 @@ pub struct Run<'a> {
     pub own: Coefficients,
     /// ∫ of the panorama's square over the sphere, all colours.
     pub energy: f64,
-    /// The RMS of reconstruction − panorama over the sphere, relative to that of the panorama.
+    /// The RMS of reconstruction − panorama at the centres of pixels, by solid angle, relative to the panorama's.
     pub error: f64,
     pub check: Option<Check>,
     /// The lowest and the highest value of the picture.

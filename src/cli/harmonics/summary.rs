@@ -15,7 +15,7 @@ pub fn print(run: &Run<'_>) -> Result<()> {
     stdout::print(|out| {
         about_panorama(out, run)?;
         about_bands(out, run)?;
-        writeln!(out, "error    {:.2} % of the panorama's RMS, over the sphere", 100.0 * run.error)?;
+        writeln!(out, "error    {:.2} % of the panorama's RMS, at the centres of its pixels", 100.0 * run.error)?;
         about_turn(out, run)?;
         let ([low, high], what) = (run.range, if run.args.irradiance { "irradiance" } else { "radiance" });
         writeln!(out, "values   {what} from {low:.4} to {high:.4}")?;

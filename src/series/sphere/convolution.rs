@@ -66,8 +66,8 @@ pub fn lambert(l: usize) -> f64 {
 }
 
 /// The irradiance at a unit normal from the nine coefficients of l ≤ 2 as a quadratic polynomial, as a shader would
-/// have it (Ramamoorthi and Hanrahan 2001, eq. 13). What higher bands add is a few per cent at most, because A_3 is 0
-/// and A_4 small.
+/// have it (Ramamoorthi and Hanrahan 2001, eq. 13). Higher bands add at most 3/32 of the strongest irradiance, and that
+/// much only sideways of a single point of light.
 ///
 /// # Panics
 /// If the degree is below 2.

@@ -186,6 +186,12 @@ fn nine_coefficients_as_a_polynomial_are_nine_coefficients_as_harmonics() {
             assert!((got - expected).abs() < 1e-14, "{got} for {expected} at {normal}");
         }
     }
+    // One point of light of irradiance 1: max(0, t) is missed by 3/32 at most, sideways.
+    let harmonics = Basis::new(2).at(DVec3::Z);
+    let point = Coefficients::new(2, harmonics.into_iter().map(|y| [y; 3]).collect());
+    let error = |t: f64| irradiance_of_nine(&point, DVec3::new((1.0 - t * t).sqrt(), 0.0, t))[0] - t.max(0.0);
+    let worst = (-100..=100).map(|k| error(f64::from(k) / 100.0).abs()).fold(0.0, f64::max);
+    assert!((error(0.0) - 3.0 / 32.0).abs() < 1e-15 && worst <= error(0.0), "{worst}");
     // The rounded constants of the paper.
     let mut one = Coefficients::zero(2);
     one.values_mut()[index(2, 2)] = [1.0; 3];
