@@ -23,6 +23,7 @@ mod paraboloid;
 mod periodic;
 mod profile;
 pub mod special;
+pub mod sphere;
 mod spline;
 mod tails;
 

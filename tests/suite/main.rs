@@ -17,5 +17,6 @@ mod rounding;
 mod scale;
 mod scene;
 mod special;
+mod sphere;
 mod support;
 mod tiles;
