@@ -6,8 +6,8 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::{Angles, Args};
-use crate::cli::target;
 use crate::series::sphere::{Coefficients, Phase};
+use crate::target;
 use crate::{Error, Result};
 
 /// What the coefficients are of.
