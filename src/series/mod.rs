@@ -9,6 +9,7 @@
 //! with the integral over the whole line, so that a shift stays exact and no window cuts the bell. docs/math.md has
 //! the derivations.
 
+pub mod fourier_bessel;
 mod gaussian;
 pub mod special;
 mod spline;

@@ -3,6 +3,7 @@
 mod cli;
 mod composite;
 mod evaluators;
+mod fourier_bessel;
 mod golden;
 mod layers;
 mod order;
