@@ -5,6 +5,7 @@ mod composite;
 mod evaluators;
 mod fourier_bessel;
 mod golden;
+mod graf;
 mod layers;
 mod order;
 mod orientation;
