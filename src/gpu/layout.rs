@@ -12,6 +12,7 @@ pub(crate) type Binding = (&'static str, u32);
 pub(crate) const PASS: Binding = ("BINDING_PASS", 0);
 /// What an evaluator has beside the pass that asks it.
 pub(crate) const EVALUATOR: Binding = ("BINDING_EVALUATOR", 1);
+pub(crate) const SAMPLES: Binding = ("BINDING_SAMPLES", 2);
 
 /// Shader storage blocks.
 pub(crate) const GHOSTS: Binding = ("BINDING_GHOSTS", 0);
@@ -20,6 +21,11 @@ pub(crate) const SPECTRUM: Binding = ("BINDING_SPECTRUM", 2);
 pub(crate) const OFFSETS: Binding = ("BINDING_OFFSETS", 3);
 pub(crate) const PHASES: Binding = ("BINDING_PHASES", 4);
 pub(crate) const PROBES: Binding = ("BINDING_PROBES", 5);
+pub(crate) const TABLE: Binding = ("BINDING_TABLE", 6);
+pub(crate) const SHAPES: Binding = ("BINDING_SHAPES", 7);
+/// Of passes that no evaluator is bound for meanwhile: eight numbers are all that GL 4.3 promises.
+pub(crate) const COEFFICIENTS: Binding = ("BINDING_COEFFICIENTS", 6);
+pub(crate) const SUMS: Binding = ("BINDING_SUMS", 7);
 
 /// Texture units.
 pub(crate) const PHOTO: Binding = ("UNIT_PHOTO", 0);
@@ -42,15 +48,20 @@ pub(crate) const RADIAL: Binding = ("UNIT_RADIAL", 12);
 pub(crate) const FOLDED: Binding = ("UNIT_FOLDED", 13);
 
 /// Every binding, for the head of every shader.
-pub(crate) const BINDINGS: [Binding; 21] = [
+pub(crate) const BINDINGS: [Binding; 26] = [
     PASS,
     EVALUATOR,
+    SAMPLES,
     GHOSTS,
     PARTIALS,
     SPECTRUM,
     OFFSETS,
     PHASES,
     PROBES,
+    TABLE,
+    SHAPES,
+    COEFFICIENTS,
+    SUMS,
     PHOTO,
     FIELD,
     HARMONICS_X,
@@ -90,7 +101,8 @@ pub(crate) struct DirectGhost {
     pub inverse_size: [f32; 2],
     /// Radiance, per colour in units of the field's scale.
     pub weight: [f32; 3],
-    pub pad: f32,
+    /// Where its bell's parameters begin; the bell's kind in the highest 8 bits, where there are several.
+    pub bell: u32,
 }
 const _: () = assert!(size_of::<DirectGhost>() == 32);
 

@@ -10,8 +10,11 @@
 //! | `harmonics`, `evaluators` | spectrum → the function `glare(pixel)` of each evaluator |
 //! | `field`, `range`, `composite` | that function → the field, its range, the picture |
 //! | `graf` | bells on a disc → their Bessel spectrum → the function `glare(pixel)` of Graf's theorem |
+//! | `coefficients` | samples of any function → its coefficients |
+//! | `lines` | curves as line strips |
 //! | `copy` | the yardstick of the bench |
 
+pub(crate) mod coefficients;
 pub(crate) mod composite;
 mod context;
 pub(crate) mod copy;
@@ -20,6 +23,7 @@ pub(crate) mod field;
 pub(crate) mod graf;
 mod harmonics;
 pub(crate) mod layout;
+pub(crate) mod lines;
 pub(crate) mod range;
 pub(crate) mod resource;
 pub(crate) mod runner;

@@ -21,8 +21,18 @@ macro_rules! sources {
 
 /// Every file of `shaders/`.
 const SOURCES: &[(&str, &str)] = &sources![
+    "bells/any.glsl",
+    "bells/cosine_squared.glsl",
     "bells/gaussian.glsl",
+    "bells/parabola.glsl",
+    "bells/paraboloid.glsl",
+    "bells/point.glsl",
+    "bells/profile.glsl",
+    "bells/sine_gaussian.glsl",
+    "bells/von_mises.glsl",
     "cells.frag",
+    "coefficients.comp",
+    "coefficients_sum.comp",
     "composite.frag",
     "copy.frag",
     "evaluators/direct.glsl",
@@ -37,6 +47,8 @@ const SOURCES: &[(&str, &str)] = &sources![
     "graf_spectrum.comp",
     "harmonics.frag",
     "lattice.frag",
+    "lines.frag",
+    "lines.vert",
     "probe.frag",
     "profiles.frag",
     "range.frag",
@@ -44,6 +56,7 @@ const SOURCES: &[(&str, &str)] = &sources![
     "shared/bspline.glsl",
     "shared/knots.glsl",
     "shared/phase.glsl",
+    "shared/shapes.glsl",
     "shared/spectrum.glsl",
     "spectrum.comp",
     "spectrum_sum.comp",
@@ -64,6 +77,11 @@ impl Program {
     pub fn fragment(device: &Rc<Device>, fragment: &str, defines: &[Define<'_>]) -> Result<Self> {
         let stages = [(glow::VERTEX_SHADER, "fullscreen.vert"), (glow::FRAGMENT_SHADER, fragment)];
         Self::link(device, &stages, defines)
+    }
+
+    /// A program that runs `fragment` for what `vertex` makes of its vertices.
+    pub fn drawing(device: &Rc<Device>, vertex: &str, fragment: &str) -> Result<Self> {
+        Self::link(device, &[(glow::VERTEX_SHADER, vertex), (glow::FRAGMENT_SHADER, fragment)], &[])
     }
 
     /// A program of one compute shader.

@@ -1,5 +1,6 @@
 //! The promises, one module each.
 
+mod bells;
 mod cli;
 mod composite;
 mod evaluators;
@@ -7,6 +8,7 @@ mod fourier_bessel;
 mod golden;
 mod graf;
 mod layers;
+mod numeric;
 mod order;
 mod orientation;
 mod photo;
