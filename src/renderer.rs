@@ -13,6 +13,7 @@
 //! ```
 
 mod convert;
+mod graf;
 mod settings;
 mod tiles;
 
@@ -31,6 +32,7 @@ use crate::plan::{Evaluator, Plan};
 use crate::scene::Ghost;
 use crate::{Error, Result};
 
+pub use graf::{GrafRenderer, GrafScene};
 pub use settings::{Normalize, Settings};
 
 /// Holds the scene on the device, and renders pictures with it.

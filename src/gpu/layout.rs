@@ -40,8 +40,15 @@ pub(crate) const RANGE: Binding = ("UNIT_RANGE", 8);
 /// Where textures are made and filled, so that no pass's own units are disturbed meanwhile.
 pub(crate) const WORKBENCH: Binding = ("UNIT_WORKBENCH", 9);
 
+/// Bessel functions, where they are looked up, what Graf's sum is along the radius, and
+/// in a quadrant.
+pub(crate) const BESSEL: Binding = ("UNIT_BESSEL", 10);
+pub(crate) const PLACES: Binding = ("UNIT_PLACES", 11);
+pub(crate) const RADIAL: Binding = ("UNIT_RADIAL", 12);
+pub(crate) const FOLDED: Binding = ("UNIT_FOLDED", 13);
+
 /// Every binding, for the head of every shader.
-pub(crate) const BINDINGS: [Binding; 22] = [
+pub(crate) const BINDINGS: [Binding; 26] = [
     PASS,
     EVALUATOR,
     SAMPLES,
@@ -64,6 +71,10 @@ pub(crate) const BINDINGS: [Binding; 22] = [
     CELLS,
     STRIPS,
     RANGE,
+    BESSEL,
+    PLACES,
+    RADIAL,
+    FOLDED,
 ];
 
 /// One ghost as the spectrum's shader reads it.

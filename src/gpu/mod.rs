@@ -9,6 +9,7 @@
 //! | `spectrum` | ghosts → A, B, C, D |
 //! | `harmonics`, `evaluators` | spectrum → the function `glare(pixel)` of each evaluator |
 //! | `field`, `range`, `composite` | that function → the field, its range, the picture |
+//! | `graf` | bells on a disc → their Bessel spectrum → the function `glare(pixel)` of Graf's theorem |
 //! | `coefficients` | samples of any function → its coefficients |
 //! | `lines` | curves as line strips |
 //! | `copy` | the yardstick of the bench |
@@ -19,6 +20,7 @@ mod context;
 pub(crate) mod copy;
 pub(crate) mod evaluators;
 pub(crate) mod field;
+pub(crate) mod graf;
 mod harmonics;
 pub(crate) mod layout;
 pub(crate) mod lines;

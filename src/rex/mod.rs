@@ -14,6 +14,7 @@ mod fourier_1d_gpu;
 mod lab;
 mod page;
 mod parabola_1d;
+mod paraboloid_bessel;
 mod report;
 
 pub use book::Book;
@@ -61,6 +62,7 @@ experiments! {
     "parabola-1d" => Parabola1d(parabola_1d),
     "fourier-1d" => Fourier1d(fourier_1d),
     "fourier-1d-gpu" => Fourier1dGpu(fourier_1d_gpu),
+    "paraboloid-bessel" => ParaboloidBessel(paraboloid_bessel),
 }
 
 impl Experiment {

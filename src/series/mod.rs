@@ -16,6 +16,7 @@
 
 mod bell;
 mod cosine_squared;
+pub mod fourier_bessel;
 mod gaussian;
 pub mod numeric;
 mod parabola;
