@@ -10,6 +10,7 @@
 //! the derivations.
 
 mod gaussian;
+pub mod printed;
 mod spline;
 
 use std::fmt;

@@ -9,6 +9,7 @@ mod order;
 mod orientation;
 mod photo;
 mod plan;
+mod printed;
 mod range;
 mod reference;
 mod rounding;
