@@ -68,6 +68,9 @@ pub enum GaussianForm {
     /// 000 and 003: κ/(T1 T2) · (2/T1) I_n (2/T2) I_m; the integrals already carry their prefactor. 1/(T1 T2). (The
     /// notes' slices g(x, y_k) g(x_k, y) carry the bell's peak twice, besides; here it is 1.)
     Slices,
+    /// 000 and 003: (2/T1) I_n (2/T2) I_m without any κ, as their A, B, C and D are printed. (1 + α_0)(1 + β_0)/4, the mean
+    /// alone at its full strength.
+    NoKappa,
     /// 000: [a_0/2 + Σ a_n c_n] [b_0/2 + Σ b_m c_m] with a_n = I_n, which lacks its 4/T. T1 T2/16.
     Halves,
     /// 000 and 003: a_00/4 + Σ a_nm c_n c_m with the right a_nm, the modes with one index 0 taken as they are printed,
@@ -81,11 +84,12 @@ pub enum GaussianForm {
 
 impl GaussianForm {
     /// Every form.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::HalfRange,
         Self::OnePeriod,
         Self::OnePeriodFullRange,
         Self::Slices,
+        Self::NoKappa,
         Self::Halves,
         Self::EdgesWhole,
         Self::EdgesDropped,
@@ -101,6 +105,7 @@ impl GaussianForm {
             Self::OnePeriod => kappa(n, m) / (period.x * period.x),
             Self::OnePeriodFullRange => 4.0 * kappa(n, m) / (period.x * period.x),
             Self::Slices => kappa(n, m) / area * 4.0 / area,
+            Self::NoKappa => 4.0 / area,
             Self::Halves => 0.5_f64.powi(edges as i32),
             // a_nm = 4/(T1 T2) · the integral over the whole plane, which is 4 I_n I_m.
             Self::EdgesWhole => 16.0 / area * [1.0, 1.0, 0.25][edges],

@@ -128,11 +128,12 @@ fn the_real_error_function_dims_the_bell() {
 #[test]
 fn the_forms_of_the_series_are_off_by_their_prefactors() {
     let (period, degree) = (DVec2::new(16.0, 32.0), [30, 30]);
-    let ratios: [(GaussianForm, f64); 8] = [
+    let ratios: [(GaussianForm, f64); 9] = [
         (GaussianForm::HalfRange, 1.0 / 4.0),
         (GaussianForm::OnePeriod, 0.5),
         (GaussianForm::OnePeriodFullRange, 2.0),
         (GaussianForm::Slices, 1.0 / 512.0),
+        (GaussianForm::NoKappa, 0.3118),
         (GaussianForm::Halves, 32.0),
         (GaussianForm::EdgesWhole, 1.21),
         (GaussianForm::EdgesDropped, 0.79),
