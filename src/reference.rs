@@ -6,13 +6,12 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::scene::Ghost;
-use crate::series::kappa;
 
 /// The sum of the bells at a point.
 pub fn direct(ghosts: &[Ghost], at: DVec2) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for ghost in ghosts {
-        let value = ghost.bell.shape().value((at - ghost.center) / ghost.size);
+        let value = ghost.bell.shape().value(at - ghost.center, ghost.size);
         for (sum, radiance) in sum.iter_mut().zip(ghost.radiance) {
             *sum += radiance * value;
         }
@@ -29,14 +28,15 @@ pub fn direct_at(ghosts: &[Ghost], points: &[DVec2]) -> Vec<[f64; 3]> {
 pub fn series(ghosts: &[Ghost], period: DVec2, counts: &[u32], at: DVec2) -> [f64; 3] {
     let mut sum = [0.0; 3];
     for ghost in ghosts {
-        let shape = ghost.bell.shape();
-        let (turns, size) = ((at - ghost.center) / period, ghost.size / period);
+        let turns = (at - ghost.center) / period;
+        let mut coefficients = ghost.bell.shape().modes().table(counts, ghost.size / period).into_iter();
         for (n, &count) in (0..).zip(counts) {
-            let x = shape.coefficient(n, size.x) * (TAU * f64::from(n) * turns.x).cos();
-            for m in 0..count {
-                let y = shape.coefficient(m, size.y) * (TAU * f64::from(m) * turns.y).cos();
+            let (s_n, c_n) = (TAU * f64::from(n) * turns.x).sin_cos();
+            for ([a, b, p, r], m) in coefficients.by_ref().take(count as usize).zip(0..) {
+                let (s_m, c_m) = (TAU * f64::from(m) * turns.y).sin_cos();
+                let value = a * c_n * c_m + b * s_n * s_m + p * c_n * s_m + r * s_n * c_m;
                 for (sum, radiance) in sum.iter_mut().zip(ghost.radiance) {
-                    *sum += radiance * kappa(n, m) * x * y;
+                    *sum += radiance * value;
                 }
             }
         }

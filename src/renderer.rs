@@ -25,7 +25,7 @@ use crate::gpu::evaluators::Evaluators;
 use crate::gpu::field::{FieldPass, Source};
 use crate::gpu::range::RangePass;
 use crate::gpu::runner::Runner;
-use crate::gpu::spectrum::{Spectrum, SpectrumGroup};
+use crate::gpu::spectrum::{Coefficients, Spectrum, SpectrumGroup};
 use crate::gpu::{Device, PassTime};
 use crate::plan::{Evaluator, Plan};
 use crate::scene::Ghost;
@@ -76,19 +76,44 @@ impl Renderer {
         }
         self.scene = None;
         if plan.evaluator == Evaluator::Direct {
-            self.evaluators.set_ghosts(&self.runner, &convert::direct_ghosts(ghosts, plan))?;
+            let (direct, shapes) = convert::direct_ghosts(ghosts, plan);
+            self.evaluators.set_ghosts(&self.runner, &direct, &shapes)?;
         } else {
             let spectral: Vec<_> =
                 plan.groups.iter().map(|group| convert::spectral_ghosts(ghosts, plan, &group.members)).collect();
-            let groups: Vec<_> = (plan.groups.iter().zip(&spectral))
-                .map(|(group, ghosts)| SpectrumGroup {
-                    bell: group.bell.shape().shader(),
+            let tables: Vec<_> = plan.groups.iter().map(|group| convert::table(plan, group)).collect();
+            let groups: Vec<_> = (plan.groups.iter().zip(&spectral).zip(&tables))
+                .map(|((group, ghosts), table)| SpectrumGroup {
+                    coefficients: match table {
+                        Some(table) => Coefficients::Table(table),
+                        None => Coefficients::Factors(group.bell.shape().shader()),
+                    },
                     ghosts,
                     degree: group.degree,
                 })
                 .collect();
             self.spectrum.compute(&self.runner, &plan.counts, &groups)?;
         }
+        self.runner.device().check("computing the spectrum")?;
+        self.scene = Some((ghosts.to_vec(), plan.clone()));
+        Ok(())
+    }
+
+    /// Computes the spectrum of ghosts whose bell is a table, whatever bells they name: for each mode that the plan
+    /// keeps, harmonic by harmonic of x, what stands before c_n c_m, s_n s_m, c_n s_m and s_n c_m in the bell's series
+    /// about its own centre, the mode's weight 1, 2 or 4 included.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the driver refuses.
+    pub(crate) fn set_tabulated(&mut self, ghosts: &[Ghost], plan: &Plan, table: &[[f32; 4]]) -> Result<()> {
+        self.scene = None;
+        let everyone: Vec<u32> = (0..ghosts.len() as u32).collect();
+        let group = SpectrumGroup {
+            coefficients: Coefficients::Table(table),
+            ghosts: &convert::spectral_ghosts(ghosts, plan, &everyone),
+            degree: plan.degree,
+        };
+        self.spectrum.compute(&self.runner, &plan.counts, &[group])?;
         self.runner.device().check("computing the spectrum")?;
         self.scene = Some((ghosts.to_vec(), plan.clone()));
         Ok(())
@@ -288,7 +313,7 @@ impl Renderer {
                 evaluators.grid(runner, &nodes.tile(), spectrum)?;
             }
         }
-        Ok(convert::source(plan.evaluator))
+        Ok(convert::source(plan))
     }
 }
 

@@ -9,7 +9,8 @@ float bell_coefficient(float n, float size) {
     return SQRT_TWO_PI * size * exp(-TWO_PI_SQUARED * turn * turn);
 }
 
-// The bell at an offset from its centre that is measured in sizes.
-float bell_value(vec2 offset) {
+// The bell at an offset from its centre; `shape` is the first of its rows in `shapes`, where it has any.
+float bell_value(vec2 offset, vec2 inverse_size, uint shape) {
+    offset *= inverse_size;
     return exp(-0.5 * dot(offset, offset));
 }

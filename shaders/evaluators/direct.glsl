@@ -6,7 +6,8 @@ const uint STEP = 8u;
 struct Ghost {
     vec2 center;
     vec2 inverse_size;
-    vec4 weight; // radiance; w unused
+    float red, green, blue; // radiance
+    uint bell;              // where its parameters begin, and its kind where there are several
 };
 layout(std430, binding = BINDING_GHOSTS) readonly buffer Ghosts {
     Ghost ghosts[];
@@ -31,7 +32,8 @@ vec3 glare(ivec2 pixel) {
             // has gone through 65535 rounds in all.
             for (uint k = 0u; k < STEP; ++k) {
                 Ghost ghost = ghosts[first + k];
-                batch += ghost.weight.rgb * bell_value((position - ghost.center) * ghost.inverse_size);
+                vec3 weight = vec3(ghost.red, ghost.green, ghost.blue);
+                batch += weight * bell_value(position - ghost.center, ghost.inverse_size, ghost.bell);
             }
         }
         precise vec3 addend = batch - lost;

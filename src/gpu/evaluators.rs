@@ -5,7 +5,7 @@ use bytemuck::Zeroable as _;
 
 use super::harmonics::Harmonics;
 use super::layout::{
-    CELLS, DirectGhost, EVALUATOR, GHOSTS, HARMONICS_X, HARMONICS_Y, Knots, LATTICE, PROFILES, STRIPS,
+    CELLS, DirectGhost, EVALUATOR, GHOSTS, HARMONICS_X, HARMONICS_Y, Knots, LATTICE, PROFILES, SHAPES, STRIPS,
 };
 use super::resource::{Buffer, Scratch, Texel};
 use super::runner::Runner;
@@ -37,6 +37,7 @@ pub(crate) struct Evaluators {
     strips: Scratch,
     knots: Buffer<Knots>,
     ghosts: Buffer<DirectGhost>,
+    shapes: Buffer<[f32; 4]>,
     direct: Buffer<[i32; 8]>,
     ghost_count: usize,
 }
@@ -53,22 +54,24 @@ impl Evaluators {
             strips: Scratch::default(),
             knots: Buffer::new(device, 2)?,
             ghosts: Buffer::new(device, 0)?,
+            shapes: Buffer::new(device, 0)?,
             direct: Buffer::new(device, 1)?,
             ghost_count: 0,
         })
     }
 
-    /// Uploads the ghosts that `direct` sums.
+    /// Uploads the ghosts that `direct` sums, and what their bells need to know beside.
     ///
     /// # Errors
     /// [`Error::Gl`] where they are more than the software renderer goes through for one pixel.
-    pub fn set_ghosts(&mut self, runner: &Runner, ghosts: &[DirectGhost]) -> Result<()> {
+    pub fn set_ghosts(&mut self, runner: &Runner, ghosts: &[DirectGhost], shapes: &[[f32; 4]]) -> Result<()> {
         // Ghosts without weight fill the last round.
         let mut padded = ghosts.to_vec();
         padded.resize(ghosts.len().next_multiple_of(STEP), DirectGhost::zeroed());
         let rounds = padded.len() / STEP + padded.len().div_ceil(64);
         within_rounds(runner, rounds, "direct", ghosts.len(), "ghosts")?;
         self.ghost_count = padded.len();
+        self.shapes.store(shapes)?;
         self.ghosts.store(&padded)
     }
 
@@ -77,6 +80,7 @@ impl Evaluators {
         self.direct.store(&[[corner[0], corner[1], size[0], size[1], self.ghost_count as i32, 0, 0, 0]])?;
         self.direct.bind_uniform(EVALUATOR);
         self.ghosts.bind_storage(GHOSTS);
+        self.shapes.bind_storage(SHAPES);
         Ok(())
     }
 

@@ -10,7 +10,7 @@ use crate::Result;
 pub(crate) struct Source {
     /// Its file in `shaders/`.
     pub evaluator: &'static str,
-    /// The bell that it includes, if any.
+    /// The file of the bell, or of all bells, that it includes, if any.
     pub bell: Option<&'static str>,
 }
 

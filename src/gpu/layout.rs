@@ -20,6 +20,8 @@ pub(crate) const SPECTRUM: Binding = ("BINDING_SPECTRUM", 2);
 pub(crate) const OFFSETS: Binding = ("BINDING_OFFSETS", 3);
 pub(crate) const PHASES: Binding = ("BINDING_PHASES", 4);
 pub(crate) const PROBES: Binding = ("BINDING_PROBES", 5);
+pub(crate) const TABLE: Binding = ("BINDING_TABLE", 6);
+pub(crate) const SHAPES: Binding = ("BINDING_SHAPES", 7);
 
 /// Texture units.
 pub(crate) const PHOTO: Binding = ("UNIT_PHOTO", 0);
@@ -35,7 +37,7 @@ pub(crate) const RANGE: Binding = ("UNIT_RANGE", 8);
 pub(crate) const WORKBENCH: Binding = ("UNIT_WORKBENCH", 9);
 
 /// Every binding, for the head of every shader.
-pub(crate) const BINDINGS: [Binding; 17] = [
+pub(crate) const BINDINGS: [Binding; 19] = [
     PASS,
     EVALUATOR,
     GHOSTS,
@@ -44,6 +46,8 @@ pub(crate) const BINDINGS: [Binding; 17] = [
     OFFSETS,
     PHASES,
     PROBES,
+    TABLE,
+    SHAPES,
     PHOTO,
     FIELD,
     HARMONICS_X,
@@ -79,7 +83,8 @@ pub(crate) struct DirectGhost {
     pub inverse_size: [f32; 2],
     /// Radiance, per colour in units of the field's scale.
     pub weight: [f32; 3],
-    pub pad: f32,
+    /// Where its bell's parameters begin; the bell's kind in the highest 8 bits, where there are several.
+    pub bell: u32,
 }
 const _: () = assert!(size_of::<DirectGhost>() == 32);
 

@@ -21,7 +21,15 @@ macro_rules! sources {
 
 /// Every file of `shaders/`.
 const SOURCES: &[(&str, &str)] = &sources![
+    "bells/any.glsl",
+    "bells/cosine_squared.glsl",
     "bells/gaussian.glsl",
+    "bells/parabola.glsl",
+    "bells/paraboloid.glsl",
+    "bells/point.glsl",
+    "bells/profile.glsl",
+    "bells/sine_gaussian.glsl",
+    "bells/von_mises.glsl",
     "cells.frag",
     "composite.frag",
     "copy.frag",
@@ -39,6 +47,7 @@ const SOURCES: &[(&str, &str)] = &sources![
     "shared/bspline.glsl",
     "shared/knots.glsl",
     "shared/phase.glsl",
+    "shared/shapes.glsl",
     "shared/spectrum.glsl",
     "spectrum.comp",
     "spectrum_sum.comp",

@@ -1,6 +1,6 @@
 //! The spectrum: ghosts in, A, B, C, D of every kept mode out, one dispatch a group.
 
-use super::layout::{GHOSTS, OFFSETS, PARTIALS, PASS, SPECTRUM, SpectralGhost};
+use super::layout::{GHOSTS, OFFSETS, PARTIALS, PASS, SPECTRUM, SpectralGhost, TABLE};
 use super::resource::Buffer;
 use super::runner::Runner;
 use crate::Result;
@@ -19,11 +19,20 @@ const PARTIALS_LIMIT: usize = 2 << 20;
 
 /// Ghosts of one bell, with the modes that they need.
 pub(crate) struct SpectrumGroup<'a> {
-    /// The bell's file in `shaders/`.
-    pub bell: &'a str,
+    pub coefficients: Coefficients<'a>,
     pub ghosts: &'a [SpectralGhost],
     /// Highest harmonics in x and y that this group adds to.
     pub degree: [u32; 2],
+}
+
+/// Where the Fourier coefficients of a group's bell come from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Coefficients<'a> {
+    /// From its file in `shaders/`, as a product of factors; every ghost may have a size of its own.
+    Factors(&'a str),
+    /// From a table that all ghosts of the group share: for each kept mode what stands before c_n c_m, s_n s_m, c_n s_m
+    /// and s_n c_m in the series of the bell about its own centre, the mode's weight 1, 2 or 4 included.
+    Table(&'a [[f32; 4]]),
 }
 
 /// The spectrum's tables on the device.
@@ -34,6 +43,7 @@ pub(crate) struct Spectrum {
     term_count: usize,
     ghosts: Buffer<SpectralGhost>,
     partials: Buffer<[f32; 4]>,
+    table: Buffer<[f32; 4]>,
     uniforms: Buffer<[u32; 4]>,
 }
 
@@ -48,6 +58,7 @@ impl Spectrum {
             term_count: 0,
             ghosts: Buffer::new(device, 0)?,
             partials: Buffer::new(device, 0)?,
+            table: Buffer::new(device, 0)?,
             uniforms: Buffer::new(device, 1)?,
         })
     }
@@ -102,11 +113,23 @@ impl Spectrum {
         let [n, m] = group.degree;
         self.uniforms.store(&[[group.ghosts.len() as u32, slice_length as u32, n, m]])?;
         self.uniforms.bind_uniform(PASS);
-        let bell = format!("\"{}\"", group.bell);
-        runner.dispatch("spectrum.comp", &[("BELL", &bell)], [tiles[0], tiles[1], slices])?;
+        let bell = match group.coefficients {
+            Coefficients::Factors(bell) => bell,
+            Coefficients::Table(_) => "bells/point.glsl",
+        };
+        runner.dispatch("spectrum.comp", &[("BELL", &format!("\"{bell}\""))], [tiles[0], tiles[1], slices])?;
         self.uniforms.store(&[[n, m, slices, 0]])?;
         self.uniforms.bind_uniform(PASS);
-        runner.dispatch("spectrum_sum.comp", &[], [tiles[0], tiles[1], 1])
+        let table = match group.coefficients {
+            Coefficients::Factors(_) => "0",
+            Coefficients::Table(table) => {
+                assert_eq!(table.len(), self.term_count, "a coefficient for each kept mode");
+                self.table.store(table)?;
+                self.table.bind_storage(TABLE);
+                "1"
+            }
+        };
+        runner.dispatch("spectrum_sum.comp", &[("TABULATED", table)], [tiles[0], tiles[1], 1])
     }
 
     /// Makes the tables visible to the passes.

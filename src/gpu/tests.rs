@@ -72,16 +72,10 @@ fn components(vector: &str, count: usize, float: bool) -> Vec<String> {
     "xyzw".chars().take(count).map(component).collect()
 }
 
-/// Two ghosts, as the shader of `path` declares them: the second shows the stride.
-fn ghosts(path: &str, first: &str, first_is_float: bool, second: &str) -> View {
-    let words = ["ghosts[0]", "ghosts[1]"].map(|ghost| {
-        [
-            components(&format!("{ghost}.{first}"), 2, first_is_float),
-            components(&format!("{ghost}.{second}"), 2, true),
-            components(&format!("{ghost}.weight"), 4, true),
-        ]
-        .concat()
-    });
+/// Two ghosts, as the shader of `path` declares them, by the words that `fields` gives of each: the second shows the
+/// stride.
+fn ghosts(path: &str, fields: fn(&str) -> Vec<String>) -> View {
+    let words = ["ghosts[0]", "ghosts[1]"].map(fields);
     let block = "layout(std430, binding = BINDING_GHOSTS)";
     View {
         declarations: vec![declaration(path, "struct Ghost {"), declaration(path, block)],
@@ -104,7 +98,14 @@ fn shaders_read_spectral_ghosts_as_they_are_written() {
         (SpectralGhost { phase, size, weight, pad }, expected)
     };
     let ([first, second], [a, b]) = ([ghost(0).0, ghost(1).0], [ghost(0).1, ghost(1).1]);
-    let view = ghosts("spectrum.comp", "phase", false, "size");
+    let view = ghosts("spectrum.comp", |ghost| {
+        [
+            components(&format!("{ghost}.phase"), 2, false),
+            components(&format!("{ghost}.size"), 2, true),
+            components(&format!("{ghost}.weight"), 4, true),
+        ]
+        .concat()
+    });
     on_each_backend(|device| assert_eq!(view.echo(device, &[first, second]), [a.clone(), b.clone()].concat()));
 }
 
@@ -112,12 +113,21 @@ fn shaders_read_spectral_ghosts_as_they_are_written() {
 fn shaders_read_direct_ghosts_as_they_are_written() {
     let ghost = |k: u8| {
         let at = |index: u8| f32::from(10 * k + index) + 0.5;
-        let (center, inverse_size, weight, pad) = ([at(0), at(1)], [at(2), at(3)], [at(4), at(5), at(6)], at(7));
-        let expected = [bits(&center), bits(&inverse_size), bits(&weight), bits(&[pad])].concat();
-        (DirectGhost { center, inverse_size, weight, pad }, expected)
+        let (center, inverse_size, weight) = ([at(0), at(1)], [at(2), at(3)], [at(4), at(5), at(6)]);
+        let bell = 0x0300_0005 + u32::from(k);
+        let expected = [bits(&center), bits(&inverse_size), bits(&weight), vec![bell]].concat();
+        (DirectGhost { center, inverse_size, weight, bell }, expected)
     };
     let ([first, second], [a, b]) = ([ghost(0).0, ghost(1).0], [ghost(0).1, ghost(1).1]);
-    let view = ghosts("evaluators/direct.glsl", "center", true, "inverse_size");
+    let view = ghosts("evaluators/direct.glsl", |ghost| {
+        let colour = |name: &str| format!("floatBitsToUint({ghost}.{name})");
+        [
+            components(&format!("{ghost}.center"), 2, true),
+            components(&format!("{ghost}.inverse_size"), 2, true),
+            vec![colour("red"), colour("green"), colour("blue"), format!("{ghost}.bell")],
+        ]
+        .concat()
+    });
     on_each_backend(|device| assert_eq!(view.echo(device, &[first, second]), [a.clone(), b.clone()].concat()));
 }
 

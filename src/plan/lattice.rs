@@ -4,8 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use glam::DVec2;
 
-use super::terms::Group;
-use super::{Plan, periodised_peak};
+use super::Plan;
+use super::decay::Decay;
 use crate::frame::Frame;
 use crate::series::spline_error;
 use crate::{Error, Result};
@@ -31,6 +31,17 @@ pub struct Lattice {
     pub error: f64,
 }
 
+/// What each harmonic along one axis may hold, over all groups, relative to the field's largest value.
+struct Marginal(Vec<f64>);
+
+impl Marginal {
+    /// A bound of the interpolation's error along the axis, with θ from node to node for the first harmonic.
+    fn error(&self, theta: f64) -> f64 {
+        let harmonics = (1..).zip(self.0.iter().skip(1));
+        harmonics.map(|(n, held)| held * spline_error(f64::from(n) * theta)).sum()
+    }
+}
+
 /// The coarsest lattice whose interpolation stays within the budget.
 ///
 /// # Errors
@@ -38,59 +49,49 @@ pub struct Lattice {
 pub(super) fn coarsest(plan: &Plan, frame: Frame, budget: f64) -> Result<Lattice> {
     let (low, high) = frame.bounds();
     let extent = high - low;
-    let axis = |degree: u32, period: f64, extent: f64, size: fn(DVec2) -> f64, which: usize| {
-        if degree == 0 {
-            // A constant: any step will do.
-            return (extent.max(period), DENSEST);
-        }
-        let error = |oversampling: f64| -> f64 {
-            let theta = PI / (oversampling * f64::from(degree));
-            let one = |group: &Group| group.weight * axis_error(group, size, period, group.degree[which], theta);
-            plan.groups.iter().map(one).sum()
-        };
-        // The other axis adds about as much, and their product a little.
-        let part = 0.49 * budget;
-        let (mut low, mut high) = (SPARSEST, DENSEST);
-        for _ in 0..30 {
-            let middle = 0.5 * (low + high);
-            if error(middle) > part { low = middle } else { high = middle }
-        }
-        (period / (2.0 * high * f64::from(degree)), high)
-    };
-    let (step_x, over_x) = axis(plan.degree[0], plan.period.x, extent.x, |v| v.x, 0);
-    let (step_y, over_y) = axis(plan.degree[1], plan.period.y, extent.y, |v| v.y, 1);
+    let marginals = marginals(plan);
+    // The other axis adds about as much, and their product a little.
+    let part = 0.49 * budget;
+    let (step_x, over_x) = step(&marginals[0], plan.degree[0], plan.period.x, extent.x, part);
+    let (step_y, over_y) = step(&marginals[1], plan.degree[1], plan.period.y, extent.y, part);
     let nodes = |extent: f64, step: f64| (extent / step).floor() as u32 + 4;
-    let mut lattice = Lattice {
-        step: DVec2::new(step_x, step_y),
-        nodes: [nodes(extent.x, step_x), nodes(extent.y, step_y)],
-        oversampling: DVec2::new(over_x, over_y),
-        error: 0.0,
-    };
-    lattice.error = error(plan, &lattice);
-    if lattice.nodes.iter().any(|&nodes| nodes > MOST_NODES) {
-        let [x, y] = lattice.nodes;
+    let step = DVec2::new(step_x, step_y);
+    let nodes = [nodes(extent.x, step_x), nodes(extent.y, step_y)];
+    if nodes.iter().any(|&nodes| nodes > MOST_NODES) {
+        let [x, y] = nodes;
         return Err(Error::Plan(format!(
             "a lattice of {x} x {y} nodes is beyond {MOST_NODES} a side; rows needs none"
         )));
     }
-    Ok(lattice)
+    let theta = TAU * step / plan.period;
+    let (x, y) = (marginals[0].error(theta.x), marginals[1].error(theta.y));
+    Ok(Lattice { step, nodes, oversampling: DVec2::new(over_x, over_y), error: x + y + x * y })
 }
 
-/// A bound of the interpolation's error: of each axis, and of one on top of the other.
-fn error(plan: &Plan, lattice: &Lattice) -> f64 {
-    let theta = TAU * lattice.step / plan.period;
-    let one = |group: &Group| {
-        let size = group.smallest / plan.period;
-        let [peak_x, peak_y] = [size.x, size.y].map(|size| periodised_peak(group.bell, size));
-        let x = axis_error(group, |v| v.x, plan.period.x, group.degree[0], theta.x);
-        let y = axis_error(group, |v| v.y, plan.period.y, group.degree[1], theta.y);
-        group.weight * (x * peak_y + y * peak_x + x * y)
-    };
-    plan.groups.iter().map(one).sum()
+fn marginals(plan: &Plan) -> [Marginal; 2] {
+    let mut sums = plan.degree.map(|degree| vec![0.0; degree as usize + 1]);
+    for group in &plan.groups {
+        let held = Decay::new(group, plan.period).marginals(group.degree);
+        for (sums, held) in sums.iter_mut().zip(held) {
+            for (sum, held) in sums.iter_mut().zip(held) {
+                *sum += group.weight * held;
+            }
+        }
+    }
+    sums.map(Marginal)
 }
 
-/// Σ 2α_n e(nθ) over a group's harmonics along one axis, for a bell of peak 1; the smallest size has the most of it.
-fn axis_error(group: &Group, size: fn(DVec2) -> f64, period: f64, degree: u32, theta: f64) -> f64 {
-    let (shape, size) = (group.bell.shape(), size(group.smallest) / period);
-    (1..=degree).map(|n| 2.0 * shape.coefficient(n, size) * spline_error(f64::from(n) * theta)).sum()
+/// The longest step along an axis within the budget, and the nodes that it gives a half wave of the highest harmonic.
+fn step(marginal: &Marginal, degree: u32, period: f64, extent: f64, budget: f64) -> (f64, f64) {
+    if degree == 0 {
+        // A constant: any step will do.
+        return (extent.max(period), DENSEST);
+    }
+    let (mut low, mut high) = (SPARSEST, DENSEST);
+    for _ in 0..30 {
+        let middle = 0.5 * (low + high);
+        let theta = PI / (middle * f64::from(degree));
+        if marginal.error(theta) > budget { low = middle } else { high = middle }
+    }
+    (period / (2.0 * high * f64::from(degree)), high)
 }

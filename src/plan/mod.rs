@@ -4,6 +4,7 @@
 //! bound; docs/accuracy.md says where each comes from.
 
 mod cost;
+mod decay;
 mod lattice;
 mod period;
 mod rounding;
@@ -14,7 +15,6 @@ use glam::DVec2;
 
 use crate::frame::Frame;
 use crate::scene::Ghost;
-use crate::series::Bell;
 use crate::{Error, Result};
 
 pub use cost::Cost;
@@ -157,10 +157,10 @@ mod share {
     pub const PERIODISATION: f64 = 0.08;
     /// Of `series` and `rows`.
     pub const TRUNCATION: f64 = 0.9;
-    /// Of `grid`, which has both. The degree grows with the logarithm of its part only, the lattice with the fourth root
-    /// of its own: so interpolation gets most.
-    pub const TRUNCATION_OF_GRID: f64 = 0.15;
-    pub const INTERPOLATION: f64 = 0.75;
+    /// Of `grid`: truncation, and interpolation. For a smooth bell the degree grows with the logarithm of its part only,
+    /// the lattice with the fourth root of its own, so interpolation gets most; for a bell with a kink the degree grows
+    /// like one over its part. The plan tries both.
+    pub const GRID: [(f64, f64); 2] = [(0.15, 0.75), (0.7, 0.2)];
 }
 
 /// The cheapest plan that meets the request.
@@ -168,13 +168,14 @@ mod share {
 /// # Errors
 /// [`Error::ToleranceBelowFloor`] where f32 cannot be as exact as asked; [`Error::Plan`] where the series that was
 /// asked for cannot be had.
-pub fn plan(ghosts: &[Ghost], request: &Request) -> Result<Plan> {
-    if !(request.tolerance > 0.0 && request.tolerance < 1.0) {
-        return Err(Error::Plan(format!("a tolerance of {} is not between 0 and 1", request.tolerance)));
+pub fn plan(ghosts: &[Ghost], asked: &Request) -> Result<Plan> {
+    if !(asked.tolerance > 0.0 && asked.tolerance < 1.0) {
+        return Err(Error::Plan(format!("a tolerance of {} is not between 0 and 1", asked.tolerance)));
     }
+    let request = &Request { period: own_period(ghosts, asked)?, ..*asked };
     let weighed = weigh::weigh(ghosts, request);
     // A period or a degree asks for a series.
-    let series = request.period.is_some() || request.degree.is_some();
+    let series = asked.period.is_some() || asked.degree.is_some();
     let wanted = |evaluator| match request.evaluator {
         Some(only) => only == evaluator,
         None => !(series && evaluator == Evaluator::Direct),
@@ -194,6 +195,25 @@ pub fn plan(ghosts: &[Ghost], request: &Request) -> Result<Plan> {
         Some(plan) => Ok(Plan { costs, ..plan }),
         None => Err(refusals.pop().unwrap_or_else(|| Error::Plan("no evaluator is left".into()))),
     }
+}
+
+/// The period that was asked for, or that periodic bells bring with them.
+///
+/// # Errors
+/// [`Error::Plan`] where they do not agree.
+fn own_period(ghosts: &[Ghost], request: &Request) -> Result<Option<DVec2>> {
+    let mut period = request.period;
+    for ghost in ghosts {
+        let Some(own) = ghost.bell.shape().period() else { continue };
+        let other = *period.get_or_insert(own);
+        if other != own {
+            return Err(Error::Plan(format!(
+                "the {} bell has a period of {} x {}, and the series one of {} x {}",
+                ghost.bell, own.x, own.y, other.x, other.y
+            )));
+        }
+    }
+    Ok(period)
 }
 
 /// The plan that one evaluator asks for.
@@ -237,18 +257,50 @@ fn candidate(ghosts: &[Ghost], weighed: &Weighed, request: &Request, evaluator: 
 }
 
 fn plan_series(plan: &mut Plan, ghosts: &[Ghost], weighed: &Weighed, request: &Request, usable: f64) -> Result<()> {
-    let grid = plan.evaluator == Evaluator::Grid;
-    let truncation = usable * if grid { share::TRUNCATION_OF_GRID } else { share::TRUNCATION };
     let reaches = period::reaches(ghosts, weighed, request.frame);
     plan.period = match request.period {
         Some(period) => period,
         None => period::shortest(&reaches, usable * share::PERIODISATION),
     };
     plan.predicted.periodisation = period::error(&reaches, plan.period);
+    if plan.evaluator != Evaluator::Grid {
+        return plan_terms(plan, request, usable * share::TRUNCATION);
+    }
+    let mut cheapest: Option<(f64, Plan)> = None;
+    let mut refusal = None;
+    for (truncation, interpolation) in share::GRID {
+        match with_lattice(plan.clone(), request, usable * truncation, usable * interpolation) {
+            Ok(plan) => {
+                let cost = cost::estimate(&plan, request).milliseconds;
+                if cheapest.as_ref().is_none_or(|(least, _)| cost < *least) {
+                    cheapest = Some((cost, plan));
+                }
+            }
+            Err(error) => refusal = Some(error),
+        }
+    }
+    match (cheapest, refusal) {
+        (Some((_, cheapest)), _) => *plan = cheapest,
+        (None, Some(refusal)) => return Err(refusal),
+        (None, None) => {}
+    }
+    Ok(())
+}
 
+/// The plan with terms and a lattice, each within its part of the tolerance.
+fn with_lattice(mut plan: Plan, request: &Request, truncation: f64, interpolation: f64) -> Result<Plan> {
+    plan_terms(&mut plan, request, truncation)?;
+    let lattice = lattice::coarsest(&plan, request.frame, interpolation)?;
+    plan.predicted.interpolation = lattice.error;
+    plan.lattice = Some(lattice);
+    Ok(plan)
+}
+
+/// Chooses the kept terms within a part of the tolerance.
+fn plan_terms(plan: &mut Plan, request: &Request, truncation: f64) -> Result<()> {
     plan.counts = match request.degree {
         Some(degree) => terms::rectangle(&mut plan.groups, degree),
-        None => terms::ellipses(&mut plan.groups, plan.period, truncation)?,
+        None => terms::fewest(&mut plan.groups, plan.period, truncation)?,
     };
     plan.terms = plan.counts.iter().map(|&count| count as usize).sum();
     if plan.terms > request.most_terms {
@@ -257,19 +309,7 @@ fn plan_series(plan: &mut Plan, ghosts: &[Ghost], weighed: &Weighed, request: &R
     }
     plan.degree = [plan.counts.len() as u32 - 1, plan.counts[0] - 1];
     plan.predicted.truncation = terms::error(&plan.groups, plan.period, &plan.counts);
-
-    if grid {
-        let lattice = lattice::coarsest(plan, request.frame, usable * share::INTERPOLATION)?;
-        plan.predicted.interpolation = lattice.error;
-        plan.lattice = Some(lattice);
-    }
     Ok(())
-}
-
-/// What a bell's periodised factor can be at most: its own 1 and what the copies add at the centre.
-fn periodised_peak(bell: Bell, size: f64) -> f64 {
-    let shape = bell.shape();
-    shape.coefficient(0, size) + shape.tails(0, size)[0]
 }
 
 #[cfg(test)]

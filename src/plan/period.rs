@@ -23,12 +23,17 @@ pub(super) struct Reach {
 /// Gathers the ghosts into some hundreds of reaches, so that trying a period costs the same for any number of them.
 pub(super) fn reaches(ghosts: &[Ghost], weighed: &Weighed, frame: Frame) -> Vec<Reach> {
     let (low, high) = frame.bounds();
-    let mut bins: BTreeMap<(&str, [i32; 6]), Reach> = BTreeMap::new();
+    let mut bells: Vec<&Bell> = Vec::new();
+    let mut bins: BTreeMap<(usize, [i32; 6]), Reach> = BTreeMap::new();
     for (ghost, &weight) in ghosts.iter().zip(&weighed.weights).filter(|(_, weight)| **weight > 0.0) {
         let shape = ghost.bell.shape();
+        let bell = bells.iter().position(|&bell| *bell == ghost.bell).unwrap_or_else(|| {
+            bells.push(&ghost.bell);
+            bells.len() - 1
+        });
         let farthest = (ghost.center - low).abs().max((high - ghost.center).abs());
-        let offset = (ghost.center.clamp(low, high) - ghost.center) / ghost.size;
-        let nearest = DVec2::new(shape.factor(offset.x), shape.factor(offset.y));
+        let offset = ghost.center.clamp(low, high) - ghost.center;
+        let nearest = DVec2::new(shape.along(offset.x, ghost.size.x), shape.along(offset.y, ghost.size.y));
         let octave = |value: f64, steps: f64| (value.max(1e-300).log2() * steps).floor() as i32;
         let key = [
             octave(ghost.size.x, 4.0),
@@ -38,8 +43,8 @@ pub(super) fn reaches(ghosts: &[Ghost], weighed: &Weighed, frame: Frame) -> Vec<
             octave(nearest.x, 1.0).max(-40),
             octave(nearest.y, 1.0).max(-40),
         ];
-        let reach = bins.entry((shape.name(), key)).or_insert(Reach {
-            bell: ghost.bell,
+        let reach = bins.entry((bell, key)).or_insert_with(|| Reach {
+            bell: ghost.bell.clone(),
             size: ghost.size,
             farthest,
             nearest,

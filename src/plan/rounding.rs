@@ -36,11 +36,10 @@ pub(super) fn bound(ghosts: &[Ghost], weighed: &Weighed, evaluator: Evaluator) -
 /// the nearest pixel, in which a rounding of the exponent counts as often as the exponent is large.
 fn direct(ghost: &Ghost, nearest: DVec2) -> f64 {
     let shape = ghost.bell.shape();
-    let value = shape.value(nearest);
-    // The steepest that exp(-d^2/2) is from `nearest` on: at a distance of 1, or where it begins.
-    let slope = |d: f64| d.max(1.0) * shape.factor(d.max(1.0));
+    let along = |distance: f64| shape.along(distance, 1.0);
+    let value = along(nearest.x) * along(nearest.y);
     let shift = PER_CENTER * (ghost.center / ghost.size).abs();
     let shifted =
-        shift.x * slope(nearest.x) * shape.factor(nearest.y) + shift.y * slope(nearest.y) * shape.factor(nearest.x);
+        shift.x * shape.steepest(nearest.x) * along(nearest.y) + shift.y * shape.steepest(nearest.y) * along(nearest.x);
     per_weight(Evaluator::Direct) * value * (1.0 + 0.5 * nearest.length_squared()) + shifted.min(1.0)
 }

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use super::*;
 use crate::reference;
+use crate::series::{Bell, Modes};
 
 fn ghost(center: [f64; 2], size: [f64; 2]) -> Ghost {
     Ghost { bell: Bell::Gaussian, center: center.into(), size: size.into(), radiance: [1.0; 3] }
@@ -37,14 +38,14 @@ fn the_interpolation_bound_holds_for_a_lattice_evaluated_in_f64() {
         let theta = 2.0 * PI * lattice.step.x / plan.period.x;
         let field = |x: f64, gained: bool| -> f64 {
             let one = |ghost: &Ghost| {
-                let shape = ghost.bell.shape();
-                let coefficient = |n: u32| shape.coefficient(n, ghost.size.x / plan.period.x);
+                let Modes::Product(factor) = ghost.bell.shape().modes() else { unreachable!("a Gaussian") };
+                let coefficients = factor.coefficients(plan.degree[0], ghost.size.x / plan.period.x);
                 let term = |n: u32| {
                     let half = 0.5 * f64::from(n) * theta;
                     let gain = if gained && n > 0 { (half / half.sin()).powi(4) } else { 1.0 };
                     let weight = if n == 0 { 1.0 } else { 2.0 };
                     gain * weight
-                        * coefficient(n)
+                        * coefficients[n as usize][0]
                         * (2.0 * PI * f64::from(n) * (x - ghost.center.x) / plan.period.x).cos()
                 };
                 (0..=plan.degree[0]).map(term).sum::<f64>()

@@ -51,14 +51,16 @@ pub(super) fn weigh(ghosts: &[Ghost], request: &Request) -> Weighed {
     let scale = scale.map(|value| if value > nothing { value } else { instead });
 
     let mut weights: Vec<f64> = ghosts.iter().map(|ghost| peak_weight(ghost, scale)).collect();
-    let reached: Vec<f64> = ghosts
-        .iter()
-        .zip(&nearest)
-        .zip(&weights)
-        .map(|((ghost, &offset), w)| w * ghost.bell.shape().value(offset))
-        .collect();
+    let reached: Vec<f64> =
+        ghosts.iter().zip(&nearest).zip(&weights).map(|((ghost, &offset), w)| w * reached(ghost, offset)).collect();
     let (dropped, dropped_error) = drop_faint(&mut weights, &reached, share::DROPPED * request.tolerance);
     Weighed { scale, peaks, weights, nearest, dropped, dropped_error }
+}
+
+/// What a bell of peak 1 is at most at any pixel, the nearest of which is `offset` sizes away.
+fn reached(ghost: &Ghost, offset: DVec2) -> f64 {
+    let shape = ghost.bell.shape();
+    shape.along(offset.x, 1.0) * shape.along(offset.y, 1.0)
 }
 
 fn peak_weight(ghost: &Ghost, scale: [f64; 3]) -> f64 {
@@ -87,7 +89,7 @@ fn probes(ghosts: &[Ghost], nearest: &[DVec2], frame: Frame) -> Vec<[i32; 2]> {
         .enumerate()
         .map(|(k, (ghost, &offset))| {
             let radiance = ghost.radiance.iter().fold(0.0f64, |a, b| a.max(b.abs()));
-            (radiance * ghost.bell.shape().value(offset), k)
+            (radiance * reached(ghost, offset), k)
         })
         .collect();
     let strongest = alone.len().min(most.div_ceil(2).min(STRONGEST));

@@ -4,21 +4,32 @@ use super::settings::{Normalize, Settings};
 use crate::gpu::composite::{Composite, Variant};
 use crate::gpu::field::Source;
 use crate::gpu::layout::{DirectGhost, SpectralGhost};
-use crate::plan::{Evaluator, Plan};
+use crate::plan::{Evaluator, Group, Plan};
 use crate::scene::Ghost;
 use crate::series::{Bell, phase};
 
-/// The GLSL function that an evaluator has readied.
-pub(super) fn source(evaluator: Evaluator) -> Source {
-    match evaluator {
-        // The Gaussian is the only bell so far; `direct` would run once for each bell.
-        Evaluator::Direct => {
-            Source { evaluator: "\"evaluators/direct.glsl\"", bell: Some(Bell::Gaussian.shape().shader()) }
-        }
+/// The GLSL function that a plan's evaluator has readied.
+pub(super) fn source(plan: &Plan) -> Source {
+    match plan.evaluator {
+        Evaluator::Direct => Source { evaluator: "\"evaluators/direct.glsl\"", bell: Some(bell_file(plan)) },
         Evaluator::Series => Source { evaluator: "\"evaluators/series.glsl\"", bell: None },
         Evaluator::Rows => Source { evaluator: "\"evaluators/rows.glsl\"", bell: None },
         Evaluator::Grid => Source { evaluator: "\"evaluators/grid.glsl\"", bell: None },
     }
+}
+
+/// The one bell that the plan's ghosts have, or all of them.
+fn bell_file(plan: &Plan) -> &'static str {
+    match one_kind(plan) {
+        Some(bell) => bell.shape().shader(),
+        None => "bells/any.glsl",
+    }
+}
+
+/// The bell of the plan's ghosts if they are of one kind.
+fn one_kind(plan: &Plan) -> Option<&Bell> {
+    let bell = plan.groups.first().map_or(&Bell::Gaussian, |group| &group.bell);
+    plan.groups.iter().all(|group| group.bell.kind() == bell.kind()).then_some(bell)
 }
 
 /// The composite that the settings ask for.
@@ -46,19 +57,44 @@ pub(super) fn spectral_ghosts(ghosts: &[Ghost], plan: &Plan, members: &[u32]) ->
     members.iter().map(convert).collect()
 }
 
-/// All ghosts that the plan keeps, as the direct sum takes them.
-pub(super) fn direct_ghosts(ghosts: &[Ghost], plan: &Plan) -> Vec<DirectGhost> {
-    let convert = |&index: &u32| {
-        let ghost = &ghosts[index as usize];
-        let inverse = 1.0 / ghost.size;
-        DirectGhost {
-            center: [ghost.center.x as f32, ghost.center.y as f32],
-            inverse_size: [inverse.x as f32, inverse.y as f32],
-            weight: weight(ghost, plan),
-            pad: 0.0,
-        }
-    };
-    plan.groups.iter().flat_map(|group| &group.members).map(convert).collect()
+/// All ghosts that the plan keeps, as the direct sum takes them, and the parameters of their bells.
+pub(super) fn direct_ghosts(ghosts: &[Ghost], plan: &Plan) -> (Vec<DirectGhost>, Vec<[f32; 4]>) {
+    let several = one_kind(plan).is_none();
+    let mut shapes = Vec::new();
+    // Where the parameters of the bells begin; there are only ever a few that have any.
+    let mut begins: Vec<(&Bell, u32)> = Vec::new();
+    let mut direct = Vec::with_capacity(plan.ghosts());
+    for group in &plan.groups {
+        let begin = match begins.iter().find(|(bell, _)| *bell == &group.bell) {
+            Some(&(_, begin)) => begin,
+            None => {
+                let begin = shapes.len() as u32;
+                shapes.extend(group.bell.shape().parameters());
+                begins.push((&group.bell, begin));
+                begin
+            }
+        };
+        let bell = begin | if several { group.bell.kind() << 24 } else { 0 };
+        direct.extend(group.members.iter().map(|&index| {
+            let ghost = &ghosts[index as usize];
+            let inverse = 1.0 / ghost.size;
+            DirectGhost {
+                center: [ghost.center.x as f32, ghost.center.y as f32],
+                inverse_size: [inverse.x as f32, inverse.y as f32],
+                weight: weight(ghost, plan),
+                bell,
+            }
+        }));
+    }
+    (direct, shapes)
+}
+
+/// The coefficients that the ghosts of a group share, as the spectrum takes them; none where each has its own.
+pub(super) fn table(plan: &Plan, group: &Group) -> Option<Vec<[f32; 4]>> {
+    let shape = group.bell.shape();
+    let single = |coefficient: [f64; 4]| coefficient.map(|x| x as f32);
+    let table = || shape.modes().table(&plan.counts, group.smallest / plan.period);
+    shape.tabulated().then(|| table().into_iter().map(single).collect())
 }
 
 /// The composite's uniforms.

@@ -11,9 +11,9 @@
 //! size = 0.0                  # optional: rms distance from the centre along one axis; 0 is a point
 //!
 //! [[ghost]]
-//! bell = "gaussian"           # optional
+//! bell = "gaussian"           # optional; docs/scenes.md has the others, and the keys that they need
 //! center = [0.25, -0.5]
-//! size = 0.2                  # σ of a Gaussian; or [σx, σy]
+//! size = 0.2                  # σ of a Gaussian, half the width of a bell that ends; or one for each axis
 //! radiance = [1.0, 0.8, 0.5]  # at its centre; may be negative, which takes light away
 //!
 //! [[lens_ghost]]
@@ -34,6 +34,7 @@ use std::path::Path;
 use glam::DVec2;
 use serde::de::DeserializeOwned;
 
+use super::bells::{Bells, Fault};
 use super::lens::Lens;
 use super::tables::{LensTable, LightsJson, LightsTable, SceneTable};
 use super::{Ghost, LensGhost, Light};
@@ -62,14 +63,20 @@ pub struct SceneFile {
 ///
 /// [`Error::SceneFile`] with the line, the key and what was expected there, or why the file cannot be read.
 pub fn read_scene(path: &Path) -> Result<SceneFile> {
-    let table: SceneTable = from_toml(path, &text(path)?)?;
+    let text = text(path)?;
+    let table: SceneTable = from_toml(path, &text)?;
+    let period = table.period.map(|[x, y]| DVec2::new(x.0, y.0));
+    let located = |fault: Fault| Error::scene_file(path, pointed(&text, fault.span, &fault.message));
+    let bells = Bells::new(path, table.profiles, period).map_err(located)?;
+    let ghosts = table.ghosts.into_iter().map(|ghost| ghost.ghost(&bells));
+    let lens_ghosts = table.lens_ghosts.into_iter().map(|ghost| ghost.lens_ghost(&bells));
     Ok(SceneFile {
         description: table.description,
-        period: table.period.map(|[x, y]| DVec2::new(x.0, y.0)),
+        period,
         degree: table.degree.map(|degree| degree.map(|d| d.0)),
         lights: converted(table.lights),
-        ghosts: converted(table.ghosts),
-        lens_ghosts: converted(table.lens_ghosts),
+        ghosts: ghosts.collect::<Result<_, _>>().map_err(located)?,
+        lens_ghosts: lens_ghosts.collect::<Result<_, _>>().map_err(located)?,
     })
 }
 
@@ -106,7 +113,11 @@ pub(super) fn lens(path: &Path, name: &str, text: &str) -> Result<Lens> {
     if table.ghosts.is_empty() {
         return Err(Error::scene_file(path, "the lens has no ghosts: expected at least one [[lens_ghost]]"));
     }
-    Ok(Lens { name: name.to_owned(), description: table.description, ghosts: converted(table.ghosts) })
+    let located = |fault: Fault| Error::scene_file(path, pointed(text, fault.span, &fault.message));
+    let bells = Bells::new(path, table.profiles, None).map_err(located)?;
+    let ghosts = table.ghosts.into_iter().map(|ghost| ghost.lens_ghost(&bells));
+    let ghosts = ghosts.collect::<Result<_, _>>().map_err(located)?;
+    Ok(Lens { name: name.to_owned(), description: table.description, ghosts })
 }
 
 fn converted<T: Into<U>, U>(tables: Vec<T>) -> Vec<U> {

@@ -29,8 +29,9 @@ impl Lens {
 /// The ghosts of all lights, light by light in the lens's order.
 ///
 /// A lens ghost with `along` = a shows the light at a times its position and |a| times as large, blurred by the ghost's
-/// own bell. Of a Gaussian bell and a light of rms size s that is a Gaussian of variance σ² + (a s)² along each axis, and
-/// its flux is the light's times share times tint, whatever the sizes.
+/// own bell. Of a Gaussian bell and a light of rms size s that is a Gaussian of variance σ² + (a s)² along each axis;
+/// another bell is made larger until its variance is that. The flux is the light's times share times tint, whatever the
+/// sizes.
 pub fn ghosts(lights: &[Light], lens: &Lens) -> Vec<Ghost> {
     lights.iter().flat_map(|light| lens.ghosts.iter().map(|ghost| ghost.of(light))).collect()
 }
@@ -39,11 +40,13 @@ impl LensGhost {
     /// The ghost of one light.
     pub fn of(&self, light: &Light) -> Ghost {
         let extent = self.along * light.size;
+        let shape = self.bell.shape();
+        let variance = shape.variance();
+        let extent = if variance > 0.0 { extent / variance.sqrt() } else { 0.0 };
         let size = DVec2::new(self.size.x.hypot(extent), self.size.y.hypot(extent));
-        let volume = self.bell.shape().integral().powi(2) * size.element_product();
-        let peak = self.share / volume;
+        let peak = self.share / shape.integral(size);
         Ghost {
-            bell: self.bell,
+            bell: self.bell.clone(),
             center: self.along * light.position,
             size,
             radiance: std::array::from_fn(|c| light.flux[c] * self.tint[c] * peak),

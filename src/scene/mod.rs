@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use crate::series::Bell;
 
+mod bells;
 mod file;
 mod find;
 mod lens;
@@ -29,13 +30,13 @@ pub struct Light {
 }
 
 /// How a lens turns any light into one ghost.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct LensGhost {
     /// The bell's profile.
     pub bell: Bell,
     /// The ghost's centre is `along` times the light's position: 1 is on the light, −1 opposite it across the axis.
     pub along: f64,
-    /// Sizes in x and y, for a light that is a point (σ for a Gaussian).
+    /// Sizes in x and y, for a light that is a point: σ of a Gaussian, half the width of a bell that ends.
     pub size: DVec2,
     /// Colour, RGB; multiplies the light's.
     pub tint: [f64; 3],
@@ -44,22 +45,22 @@ pub struct LensGhost {
 }
 
 /// One bell on the picture plane.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Ghost {
     /// The bell's profile.
     pub bell: Bell,
     /// Its centre.
     pub center: DVec2,
-    /// Sizes in x and y (σ for a Gaussian).
+    /// Sizes in x and y: σ of a Gaussian, half the width of a bell that ends.
     pub size: DVec2,
-    /// Radiance at its centre, RGB.
+    /// Radiance where it is brightest, RGB: at its centre, for a bell that has its largest value there.
     pub radiance: [f64; 3],
 }
 
 impl Ghost {
     /// The ghost's flux, RGB: its integral over the plane.
     pub fn flux(&self) -> [f64; 3] {
-        let volume = self.bell.shape().integral().powi(2) * self.size.element_product();
+        let volume = self.bell.shape().integral(self.size);
         self.radiance.map(|radiance| radiance * volume)
     }
 }

@@ -2,10 +2,11 @@
 
 use glam::DVec2;
 use serde::Deserialize;
+use toml::Spanned;
 
+use super::bells::{BellKeys, BellName, Bells, Fault, ProfileTable};
 use super::number::{Degree, Finite, NotNegative, Number, Positive, Sizes, plain};
 use super::{Ghost, LensGhost, Light};
-use crate::series::Bell;
 
 /// A scene file; also a file of lights alone.
 #[derive(Deserialize)]
@@ -15,6 +16,8 @@ pub(super) struct SceneTable {
     pub description: String,
     pub period: Option<[Positive; 2]>,
     pub degree: Option<[Degree; 2]>,
+    #[serde(default, rename = "profile")]
+    pub profiles: Vec<ProfileTable>,
     #[serde(default, rename = "light")]
     pub lights: Vec<LightTable>,
     #[serde(default, rename = "ghost")]
@@ -29,6 +32,8 @@ pub(super) struct SceneTable {
 pub(super) struct LensTable {
     #[serde(default)]
     pub description: String,
+    #[serde(default, rename = "profile")]
+    pub profiles: Vec<ProfileTable>,
     #[serde(rename = "lens_ghost")]
     pub ghosts: Vec<LensGhostTable>,
 }
@@ -59,8 +64,9 @@ pub(super) struct LightTable {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct GhostTable {
-    #[serde(default = "gaussian")]
-    bell: Bell,
+    bell: Option<Spanned<BellName>>,
+    profile: Option<Spanned<String>>,
+    mean: Option<Spanned<Finite>>,
     center: [Finite; 2],
     size: Sizes,
     radiance: [Finite; 3],
@@ -69,8 +75,9 @@ pub(super) struct GhostTable {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct LensGhostTable {
-    #[serde(default = "gaussian")]
-    bell: Bell,
+    bell: Option<Spanned<BellName>>,
+    profile: Option<Spanned<String>>,
+    mean: Option<Spanned<Finite>>,
     along: Finite,
     size: Sizes,
     #[serde(default = "white")]
@@ -86,24 +93,33 @@ fn white() -> [NotNegative; 3] {
     [1.0; 3].map(Number::new)
 }
 
-fn gaussian() -> Bell {
-    Bell::Gaussian
-}
-
 impl From<LightTable> for Light {
     fn from(LightTable { position, flux, size }: LightTable) -> Self {
         Self { position: DVec2::from_array(plain(position)), flux: plain(flux), size: size.0 }
     }
 }
 
-impl From<GhostTable> for Ghost {
-    fn from(GhostTable { bell, center, size, radiance }: GhostTable) -> Self {
-        Self { bell, center: DVec2::from_array(plain(center)), size: size.0, radiance: plain(radiance) }
+impl GhostTable {
+    /// The ghost, if its bell is to be had.
+    pub fn ghost(self, bells: &Bells) -> Result<Ghost, Fault> {
+        let Self { bell, profile, mean, center, size, radiance } = self;
+        let bell = bells.bell(&BellKeys { bell, profile, mean })?;
+        Ok(Ghost { bell, center: DVec2::from_array(plain(center)), size: size.0, radiance: plain(radiance) })
     }
 }
 
-impl From<LensGhostTable> for LensGhost {
-    fn from(LensGhostTable { bell, along, size, tint, share }: LensGhostTable) -> Self {
-        Self { bell, along: along.0, size: size.0, tint: plain(tint), share: share.0 }
+impl LensGhostTable {
+    /// The lens ghost, if its bell is to be had and can carry light.
+    pub fn lens_ghost(self, bells: &Bells) -> Result<LensGhost, Fault> {
+        let Self { bell, profile, mean, along, size, tint, share } = self;
+        let span = profile.as_ref().map_or(0..0, Spanned::span);
+        let bell = bells.bell(&BellKeys { bell, profile, mean })?;
+        if bell.shape().integral(size.0) <= 0.0 {
+            return Err(Fault {
+                span,
+                message: "this profile's integral is not positive: it cannot carry a share".into(),
+            });
+        }
+        Ok(LensGhost { bell, along: along.0, size: size.0, tint: plain(tint), share: share.0 })
     }
 }

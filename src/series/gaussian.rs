@@ -1,13 +1,23 @@
 //! The Gaussian exp(−x²/2σ²), by its wrapped coefficients: exact for the periodised bell, without any erf.
 
-use std::f64::consts::{PI, SQRT_2, TAU};
+use std::f64::consts::{E, PI, SQRT_2, TAU};
 
-use super::Shape;
+use glam::DVec2;
+
+use super::bell::{Factor, Modes, Shape};
+use super::tails::summed;
 
 /// √(2π).
 const SQRT_TAU: f64 = 2.506_628_274_631_000_5;
 
 pub(super) struct Gaussian;
+
+impl Gaussian {
+    fn coefficient(n: u32, size: f64) -> f64 {
+        let turn = TAU * f64::from(n) * size;
+        SQRT_TAU * size * (-0.5 * turn * turn).exp()
+    }
+}
 
 impl Shape for Gaussian {
     fn name(&self) -> &'static str {
@@ -18,38 +28,12 @@ impl Shape for Gaussian {
         "bells/gaussian.glsl"
     }
 
-    fn factor(&self, distance: f64) -> f64 {
-        (-0.5 * distance * distance).exp()
+    fn value(&self, offset: DVec2, size: DVec2) -> f64 {
+        (-0.5 * (offset / size).length_squared()).exp()
     }
 
-    fn integral(&self) -> f64 {
-        SQRT_TAU
-    }
-
-    fn coefficient(&self, n: u32, size: f64) -> f64 {
-        let turn = TAU * f64::from(n) * size;
-        SQRT_TAU * size * (-0.5 * turn * turn).exp()
-    }
-
-    /// The sum itself from the last coefficient that f64 can tell from nothing; for bells so narrow that this would
-    /// be millions of terms, the integral bound erfc(√2 π N σ/T).
-    fn tails(&self, highest: u32, size: f64) -> Vec<f64> {
-        const NEGLIGIBLE: f64 = 1.5; // exp(−(2π·1.5)²/2) = 5e-20
-        const NARROWEST: f64 = 1e-4;
-        if size < NARROWEST {
-            return (0..=highest).map(|n| libm::erfc(SQRT_2 * PI * f64::from(n) * size)).collect();
-        }
-        let last = highest + (NEGLIGIBLE / size).ceil() as u32;
-        let mut tails = vec![0.0; highest as usize + 1];
-        let mut sum = 0.0;
-        for n in (1..=last).rev() {
-            sum += 2.0 * self.coefficient(n, size);
-            if let Some(tail) = tails.get_mut(n as usize - 1) {
-                // A few roundings upward, so that the sum stays a bound.
-                *tail = sum * (1.0 + 1e-13);
-            }
-        }
-        tails
+    fn along(&self, distance: f64, size: f64) -> f64 {
+        (-0.5 * (distance / size).powi(2)).exp()
     }
 
     /// 2 exp(−(T−D)²/2σ²) / (1 − exp(−(3T²−2TD)/2σ²)).
@@ -57,5 +41,60 @@ impl Shape for Gaussian {
         let gap = (period - distance) / size;
         let ratio = period * (3.0 * period - 2.0 * distance) / (size * size);
         2.0 * (-0.5 * gap * gap).exp() / -(-0.5 * ratio).exp_m1()
+    }
+
+    /// d exp(−d²/2), which is steepest at a distance of 1, or where it begins.
+    fn steepest(&self, distance: f64) -> f64 {
+        let d = distance.max(1.0);
+        d * (-0.5 * d * d).exp()
+    }
+
+    fn integral(&self, size: DVec2) -> f64 {
+        TAU * size.element_product()
+    }
+
+    fn variance(&self) -> f64 {
+        1.0
+    }
+
+    fn modes(&self) -> Modes<'_> {
+        Modes::Product(self)
+    }
+
+    fn tabulated(&self) -> bool {
+        false
+    }
+}
+
+impl Factor for Gaussian {
+    /// a_n = √(2π) (σ/T) exp(−(nωσ)²/2).
+    fn coefficients(&self, highest: u32, size: f64) -> Vec<[f64; 2]> {
+        (0..=highest).map(|n| [Self::coefficient(n, size), 0.0]).collect()
+    }
+
+    /// The sum itself from the last coefficient that f64 can tell from nothing; for bells so narrow that this would
+    /// be millions of terms, the integral bound erfc(√2 π N σ/T). Either falls as the size grows.
+    fn tails(&self, highest: u32, size: f64) -> Vec<f64> {
+        const NEGLIGIBLE: f64 = 1.5; // exp(−(2π·1.5)²/2) = 5e-20
+        const NARROWEST: f64 = 1e-4;
+        if size < NARROWEST {
+            return (0..=highest).map(|n| libm::erfc(SQRT_2 * PI * f64::from(n) * size)).collect();
+        }
+        let last = highest + (NEGLIGIBLE / size).ceil() as u32;
+        summed(highest, last, 0.0, |n| 2.0 * Self::coefficient(n, size))
+    }
+
+    /// As much as leaves the sum of all coefficients, which is the periodised peak, a bound for the largest size too.
+    fn mean(&self, size: f64) -> f64 {
+        let copies = |size: f64| -> f64 {
+            let reach = (9.0 * size).min(1e6) as i32;
+            (1..=reach).map(|j| 2.0 * self.along(f64::from(j), size)).sum()
+        };
+        Self::coefficient(0, size) + (copies(SQRT_2 * size) - copies(size)).max(0.0)
+    }
+
+    /// erfc(z) < exp(−z²), so z = √ln(1/ε) is enough.
+    fn degree(&self, error: f64, size: f64) -> f64 {
+        (1.0 / error).max(E).ln().sqrt() / (SQRT_2 * PI * size) + 1.0
     }
 }

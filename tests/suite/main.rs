@@ -1,5 +1,6 @@
 //! The promises, one module each.
 
+mod bells;
 mod cli;
 mod composite;
 mod evaluators;
@@ -15,5 +16,6 @@ mod reference;
 mod rounding;
 mod scale;
 mod scene;
+mod special;
 mod support;
 mod tiles;

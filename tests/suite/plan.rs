@@ -43,7 +43,7 @@ fn series_at(ghosts: &[Ghost], plan: &Plan, points: &[DVec2]) -> Vec<[f64; 3]> {
 
 /// The ghosts that a plan keeps.
 fn kept(ghosts: &[Ghost], plan: &Plan) -> Vec<Ghost> {
-    plan.groups.iter().flat_map(|group| &group.members).map(|&index| ghosts[index as usize]).collect()
+    plan.groups.iter().flat_map(|group| &group.members).map(|&index| ghosts[index as usize].clone()).collect()
 }
 
 #[test]
@@ -180,7 +180,7 @@ fn ghosts_far_away_are_dropped_and_counted() {
     let near = scenes::sized(3, 5, FRAME, 0.2, 1.0);
     let far = scenes::sized(4, 7, FRAME, 0.1, 0.5);
     let far: Vec<Ghost> =
-        far.iter().map(|ghost| Ghost { center: ghost.center + DVec2::new(20.0, 0.0), ..*ghost }).collect();
+        far.iter().map(|ghost| Ghost { center: ghost.center + DVec2::new(20.0, 0.0), ..ghost.clone() }).collect();
     let plan = plan(&[near.clone(), far.clone()].concat(), &Request::new(FRAME, 1e-3)).unwrap();
     assert_eq!((plan.dropped, plan.ghosts()), (7, 5));
     assert!((0.0..2e-5).contains(&plan.predicted.dropped), "{:?}", plan.predicted);
@@ -266,7 +266,7 @@ fn a_tiny_ghost_is_for_the_direct_sum_only() {
         within(chosen.predicted.total(), &backend.to_string(), &pixels, &exact, &actual);
     });
     // Off every pixel's centre nothing sees it.
-    let between = [Ghost { center: DVec2::splat(0.3 * frame.pixel_size()), ..ghosts[0] }];
+    let between = [Ghost { center: DVec2::splat(0.3 * frame.pixel_size()), ..ghosts[0].clone() }];
     assert_eq!(plan(&between, &Request::new(frame, 1e-3)).unwrap().dropped, 1);
 }
 

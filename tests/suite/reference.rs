@@ -43,7 +43,7 @@ fn both_are_linear_in_the_ghosts() {
         // Only the order of some additions differs.
         within(1e-14, "two parts against the whole", &[], &field(&ghosts, &points), &apart);
     }
-    let doubled: Vec<_> = ghosts.iter().map(|g| Ghost { radiance: g.radiance.map(|r| 2.0 * r), ..*g }).collect();
+    let doubled: Vec<_> = ghosts.iter().map(|g| Ghost { radiance: g.radiance.map(|r| 2.0 * r), ..g.clone() }).collect();
     for at in points {
         assert_eq!(direct(&doubled, at), direct(&ghosts, at).map(|value| 2.0 * value));
     }
@@ -52,7 +52,8 @@ fn both_are_linear_in_the_ghosts() {
 #[test]
 fn moving_ghosts_and_points_together_changes_nothing_and_whole_periods_neither() {
     let (ghosts, points) = (ghosts(), points(10));
-    let moved = |by: DVec2| -> Vec<Ghost> { ghosts.iter().map(|g| Ghost { center: g.center + by, ..*g }).collect() };
+    let moved =
+        |by: DVec2| -> Vec<Ghost> { ghosts.iter().map(|g| Ghost { center: g.center + by, ..g.clone() }).collect() };
     let shift = DVec2::new(0.625, -0.375);
     let shifted: Vec<_> = points.iter().map(|&at| at + shift).collect();
     // Centres and points are rounded once more each, 1e-16 against sizes of 0.3.

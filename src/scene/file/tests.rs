@@ -59,7 +59,7 @@ fn a_full_scene_is_read_with_whole_numbers_and_defaults() {
     assert_eq!(scene.lights[0], Light { position: DVec2::new(0.3, -2.0), flux: [12.0, 10.0, 8.0], size: 0.0 });
     assert_eq!(scene.lights[1].size, 1.0);
     let (bell, size) = (Bell::Gaussian, DVec2::new(0.2, 1.0));
-    let ghost = Ghost { bell, center: DVec2::new(0.25, -0.5), size, radiance: [1.0, -0.8, 0.0] };
+    let ghost = Ghost { bell: bell.clone(), center: DVec2::new(0.25, -0.5), size, radiance: [1.0, -0.8, 0.0] };
     assert_eq!(scene.ghosts, [ghost]);
     let size = DVec2::splat(0.15);
     assert_eq!(scene.lens_ghosts[0], LensGhost { bell, along: -0.7, size, tint: [1.0, 0.9, 0.7], share: 0.01 });

@@ -1,0 +1,44 @@
+// Every bell, for scenes that have several kinds.
+
+#define bell_coefficient gaussian_coefficient
+#define bell_value gaussian
+#include "bells/gaussian.glsl"
+#undef bell_coefficient
+#undef bell_value
+#define bell_coefficient cosine_squared_coefficient
+#define bell_value cosine_squared
+#include "bells/cosine_squared.glsl"
+#undef bell_coefficient
+#undef bell_value
+#define bell_coefficient parabola_coefficient
+#define bell_value parabola
+#include "bells/parabola.glsl"
+#undef bell_coefficient
+#undef bell_value
+#define bell_value paraboloid
+#include "bells/paraboloid.glsl"
+#undef bell_value
+#define bell_value von_mises
+#include "bells/von_mises.glsl"
+#undef bell_value
+#define bell_value sine_gaussian
+#include "bells/sine_gaussian.glsl"
+#undef bell_value
+#define bell_value profile
+#include "bells/profile.glsl"
+#undef bell_value
+
+// The kind, in the order of the registry, is in the highest 8 bits.
+float bell_value(vec2 offset, vec2 inverse_size, uint bell) {
+    uint shape = bell & 0xffffffu;
+    switch (bell >> 24) {
+    case 0u: return gaussian(offset, inverse_size, shape);
+    case 1u: return cosine_squared(offset, inverse_size, shape);
+    case 2u: return parabola(offset, inverse_size, shape);
+    case 3u: return paraboloid(offset, inverse_size, shape);
+    case 4u: return von_mises(offset, inverse_size, shape);
+    case 5u: return sine_gaussian(offset, inverse_size, shape);
+    case 6u: return profile(offset, inverse_size, shape);
+    }
+    return 0.0;
+}

@@ -1,0 +1,4 @@
+// What bells need to know beside offset and size, several rows a bell.
+layout(std430, binding = BINDING_SHAPES) readonly buffer Shapes {
+    vec4 shapes[];
+};

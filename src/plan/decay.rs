@@ -1,0 +1,191 @@
+//! How a group's coefficients fall off: what any set of kept modes leaves out, at most.
+//!
+//! Everything is for a bell of peak 1, and holds for every size of the group.
+
+use std::f64::consts::TAU;
+
+use glam::DVec2;
+
+use super::{Group, HIGHEST_DEGREE};
+use crate::series::{Factor, Modes, Radial};
+use crate::{Error, Result};
+
+/// What the coefficients of a group's bell are at most.
+pub(super) enum Decay<'a> {
+    Product { factor: &'a dyn Factor, size: DVec2 },
+    Radial { radial: &'a dyn Radial, size: DVec2 },
+}
+
+/// What a factor has beyond each harmonic along one axis.
+struct Axis {
+    tails: Vec<f64>,
+    mean: f64,
+}
+
+impl Axis {
+    fn new(factor: &dyn Factor, highest: u32, size: f64) -> Self {
+        Self { tails: factor.tails(highest, size), mean: factor.mean(size) }
+    }
+
+    /// A bound of the sum of all coefficients.
+    fn total(&self) -> f64 {
+        self.mean + self.tails[0]
+    }
+
+    /// A bound of |a_n + i b_n|.
+    fn coefficient(&self, n: usize) -> f64 {
+        if n == 0 { self.mean } else { 0.5 * (self.tails[n - 1] - self.tails[n]) }
+    }
+}
+
+impl<'a> Decay<'a> {
+    /// Of a group, in a period.
+    pub fn new(group: &'a Group, period: DVec2) -> Self {
+        let size = group.smallest / period;
+        match group.bell.shape().modes() {
+            Modes::Product(factor) => Self::Product { factor, size },
+            Modes::Radial(radial) => Self::Radial { radial, size },
+        }
+    }
+
+    /// The fewest modes found that leave out at most `error`: for each harmonic of x how many of y, never growing.
+    ///
+    /// # Errors
+    /// [`Error::Plan`] where a degree beyond [`HIGHEST_DEGREE`] would be needed.
+    pub fn kept(&self, error: f64) -> Result<Vec<u32>> {
+        if error >= 1.0 {
+            return Ok(vec![1]);
+        }
+        match *self {
+            Self::Product { factor, size } => kept_product(factor, size, error),
+            Self::Radial { radial, size } => kept_radial(radial, size, error),
+        }
+    }
+
+    /// A bound of what the kept modes leave out at any point.
+    pub fn beyond(&self, counts: &[u32]) -> f64 {
+        match *self {
+            Self::Product { factor, size } => {
+                let x = Axis::new(factor, counts.len() as u32 - 1, size.x);
+                let y = Axis::new(factor, counts[0] - 1, size.y);
+                beyond_product(&x, &y, counts)
+            }
+            Self::Radial { radial, size } => {
+                let turn = TAU * size;
+                let rows = (0..).zip(counts.iter().copied().chain([0]));
+                // The nearest mode that is not there: at the end of a row, or where there is no row.
+                let nearest = rows.map(|(n, m)| (turn * DVec2::new(f64::from(n), f64::from(m))).length());
+                radial.beyond(nearest.fold(f64::INFINITY, f64::min), 0.5 * turn.length())
+            }
+        }
+    }
+
+    /// For each harmonic of x, and for each of y, a bound of what it holds together with all kept ones of the other
+    /// axis.
+    pub fn marginals(&self, degree: [u32; 2]) -> [Vec<f64>; 2] {
+        match *self {
+            Self::Product { factor, size } => {
+                let [x, y] =
+                    [(degree[0], size.x), (degree[1], size.y)].map(|(degree, size)| Axis::new(factor, degree, size));
+                let held = |axis: &Axis, other: &Axis, degree: u32| {
+                    let doubled = |n: usize| if n == 0 { 1.0 } else { 2.0 };
+                    (0..=degree as usize).map(|n| doubled(n) * axis.coefficient(n) * other.total()).collect()
+                };
+                [held(&x, &y, degree[0]), held(&y, &x, degree[1])]
+            }
+            Self::Radial { radial, size } => {
+                let counts = vec![degree[1] + 1; degree[0] as usize + 1];
+                let table = Modes::Radial(radial).table(&counts, size);
+                let mut held = [vec![0.0; degree[0] as usize + 1], vec![0.0; degree[1] as usize + 1]];
+                for (index, coefficient) in table.iter().enumerate() {
+                    held[0][index / (degree[1] as usize + 1)] += coefficient[0].abs();
+                    held[1][index % (degree[1] as usize + 1)] += coefficient[0].abs();
+                }
+                held
+            }
+        }
+    }
+}
+
+/// The modes whose coefficients are largest: all above a threshold, found by bisection. For a Gaussian they are an
+/// ellipse, for a bell whose coefficients fall like powers of n and of m a hyperbolic cross.
+fn kept_product(factor: &dyn Factor, size: DVec2, error: f64) -> Result<Vec<u32>> {
+    // Beyond either axis a part of the error is left out, and the rest within, where columns and rows are both high. A
+    // larger part would leave more modes within; a smaller one would make the degree higher.
+    let degrees = [size.x, size.y].map(|size| factor.degree(0.3 * error, size));
+    let widest = degrees[0].max(degrees[1]);
+    let highest = degrees.map(|degree| (degree.ceil() as u32).min(HIGHEST_DEGREE));
+    let (x, y) = (Axis::new(factor, highest[0], size.x), Axis::new(factor, highest[1], size.y));
+    let columns: Vec<f64> = (0..=highest[0] as usize).map(|n| x.coefficient(n)).collect();
+    let rows: Vec<f64> = (0..=highest[1] as usize).map(|m| y.coefficient(m)).collect();
+    let largest = columns[0] * rows[0];
+    let (mut high, mut low) = (0.0, (1e-3 * error / (highest[0] + 1) as f64 / (highest[1] + 1) as f64 / largest).ln());
+    let whole = above(&columns, &rows, 0.0);
+    if beyond_product(&x, &y, &whole) > error {
+        return Err(too_high(widest));
+    }
+    for _ in 0..16 {
+        let middle = 0.5 * (low + high);
+        let counts = above(&columns, &rows, largest * f64::exp(middle));
+        if beyond_product(&x, &y, &counts) > error { high = middle } else { low = middle }
+    }
+    let counts = above(&columns, &rows, largest * f64::exp(low));
+    Ok(if beyond_product(&x, &y, &counts) > error { whole } else { counts })
+}
+
+/// For each column how many rows have a product of at least the threshold; one at least. Both fall.
+fn above(columns: &[f64], rows: &[f64], threshold: f64) -> Vec<u32> {
+    let mut count = rows.len();
+    let mut counts = Vec::with_capacity(columns.len());
+    for column in columns {
+        while count > 0 && column * rows[count - 1] < threshold {
+            count -= 1;
+        }
+        if count == 0 {
+            break;
+        }
+        counts.push(count as u32);
+    }
+    if counts.is_empty() { vec![1] } else { counts }
+}
+
+/// The sum of all coefficients outside the kept modes: the largest error, for a Gaussian reached at its centre.
+///
+/// By summation by parts it is a sum of tails in x and in y with factors that are not negative, as long as the rows get
+/// no longer with n; so a bound of the tails bounds it, also one that holds for all sizes of a group.
+fn beyond_product(x: &Axis, y: &Axis, counts: &[u32]) -> f64 {
+    let doubled = |n: usize| if n == 0 { 1.0 } else { 2.0 };
+    let rows = counts.iter().enumerate();
+    let within: f64 = rows.map(|(n, &count)| doubled(n) * x.coefficient(n) * y.tails[count as usize - 1]).sum();
+    within + x.tails[counts.len() - 1] * y.total()
+}
+
+/// The modes within an ellipse, found by bisection.
+fn kept_radial(radial: &dyn Radial, size: DVec2, error: f64) -> Result<Vec<u32>> {
+    let turn = TAU * size;
+    let cell = 0.5 * turn.length();
+    let highest = turn.min_element() * f64::from(HIGHEST_DEGREE);
+    let (mut low, mut high) = (0.0, highest);
+    if radial.beyond(highest, cell) > error {
+        return Err(too_high(f64::INFINITY));
+    }
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if radial.beyond(middle, cell) > error { low = middle } else { high = middle }
+    }
+    // No mode below the radius may be missing.
+    let axes = high / turn;
+    let rows = axes.x.floor() as u32;
+    let row = |n: u32| {
+        let across = 1.0 - (f64::from(n) / axes.x.max(f64::MIN_POSITIVE)).powi(2);
+        (axes.y * across.max(0.0).sqrt()).floor() as u32 + 1
+    };
+    Ok((0..=rows).map(row).collect())
+}
+
+fn too_high(degree: f64) -> Error {
+    let needed = if degree.is_finite() { format!("of about {degree:.0}") } else { "beyond that".to_owned() };
+    Error::Plan(format!(
+        "these ghosts would need a degree {needed}, and {HIGHEST_DEGREE} is the highest; --evaluator direct has no degree"
+    ))
+}

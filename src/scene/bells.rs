@@ -1,0 +1,160 @@
+//! The bells that scene and lens files name.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use glam::DVec2;
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::number::Finite;
+use crate::series::{Bell, Profile, SineGaussian, VonMises};
+
+/// The names of bells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum BellName {
+    Gaussian,
+    CosineSquared,
+    Parabola,
+    Paraboloid,
+    VonMises,
+    SineGaussian,
+    Profile,
+}
+
+/// A radial profile: rows in the file itself, or in a CSV file beside it.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ProfileTable {
+    name: Spanned<String>,
+    rows: Option<Vec<[Finite; 2]>>,
+    file: Option<String>,
+}
+
+/// What a table says of its ghost's bell.
+pub(super) struct BellKeys {
+    pub bell: Option<Spanned<BellName>>,
+    pub profile: Option<Spanned<String>>,
+    pub mean: Option<Spanned<Finite>>,
+}
+
+/// What is wrong with a part of a file.
+pub(super) struct Fault {
+    pub span: std::ops::Range<usize>,
+    pub message: String,
+}
+
+fn fault<T>(at: &Spanned<T>, message: impl Into<String>) -> Fault {
+    Fault { span: at.span(), message: message.into() }
+}
+
+/// What the bells of a file may refer to.
+#[derive(Default)]
+pub(super) struct Bells {
+    period: Option<DVec2>,
+    profiles: HashMap<String, Arc<Profile>>,
+}
+
+impl Bells {
+    /// The profiles of a file at `path`, which may refer to others beside it, and its period.
+    pub fn new(path: &Path, tables: Vec<ProfileTable>, period: Option<DVec2>) -> Result<Self, Fault> {
+        let mut profiles = HashMap::new();
+        for ProfileTable { name, rows, file } in tables {
+            let rows = match (rows, file) {
+                (Some(rows), None) => rows.iter().map(|[radius, value]| [radius.0, value.0]).collect(),
+                (None, Some(file)) => {
+                    let file = path.parent().unwrap_or(Path::new("")).join(file);
+                    read_rows(&file).map_err(|reason| fault(&name, reason))?
+                }
+                _ => return Err(fault(&name, "a profile has either `rows` or a `file`")),
+            };
+            let profile = Profile::new(&rows).map_err(|reason| fault(&name, reason))?;
+            if profiles.insert(name.as_ref().clone(), Arc::new(profile)).is_some() {
+                return Err(fault(&name, "there is a profile of that name already"));
+            }
+        }
+        Ok(Self { period, profiles })
+    }
+
+    /// The bell that a ghost has.
+    pub fn bell(&self, keys: &BellKeys) -> Result<Bell, Fault> {
+        let Some(name) = &keys.bell else {
+            self.only(keys, None)?;
+            return Ok(Bell::Gaussian);
+        };
+        self.only(keys, Some(*name.as_ref()))?;
+        let period = || {
+            let reason = format!("a {} bell is periodic, so a scene file must give the series' `period`", spelt(name));
+            self.period.ok_or_else(|| fault(name, reason))
+        };
+        Ok(match name.as_ref() {
+            BellName::Gaussian => Bell::Gaussian,
+            BellName::CosineSquared => Bell::CosineSquared,
+            BellName::Parabola => Bell::Parabola,
+            BellName::Paraboloid => Bell::Paraboloid,
+            BellName::VonMises => Bell::VonMises(VonMises { period: period()? }),
+            BellName::SineGaussian => {
+                let mean = keys.mean.as_ref().map_or(0.0, |mean| mean.as_ref().0);
+                Bell::SineGaussian(SineGaussian { period: period()?, mean })
+            }
+            BellName::Profile => {
+                let Some(wanted) = &keys.profile else {
+                    return Err(fault(name, "a profile bell needs `profile`, the name of a [[profile]]"));
+                };
+                let unknown = || fault(wanted, format!("there is no [[profile]] called {:?}", wanted.as_ref()));
+                Bell::Profile(self.profiles.get(wanted.as_ref()).ok_or_else(unknown)?.clone())
+            }
+        })
+    }
+
+    /// Refuses keys that mean nothing for the bell, and numbers that make no sense.
+    fn only(&self, keys: &BellKeys, name: Option<BellName>) -> Result<(), Fault> {
+        if let Some(profile) = keys.profile.as_ref().filter(|_| name != Some(BellName::Profile)) {
+            return Err(fault(profile, "`profile` belongs to a bell = \"profile\""));
+        }
+        let Some(mean) = &keys.mean else { return Ok(()) };
+        if name != Some(BellName::SineGaussian) {
+            return Err(fault(mean, "`mean` belongs to a bell = \"sine-gaussian\""));
+        }
+        if mean.as_ref().0.abs() > 1.0 {
+            return Err(fault(mean, "the mean of a sine-gaussian bell is from -1 to 1, like a sine"));
+        }
+        Ok(())
+    }
+}
+
+fn spelt(name: &Spanned<BellName>) -> &'static str {
+    match name.as_ref() {
+        BellName::SineGaussian => "sine-gaussian",
+        _ => "von-mises",
+    }
+}
+
+/// Radius and value from the first two columns of a CSV file; lines that begin with # are comments, and the first line
+/// may be a heading.
+fn read_rows(path: &Path) -> Result<Vec<[f64; 2]>, String> {
+    let named = |reason: &dyn std::fmt::Display| format!("the profile {} {reason}", path.display());
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .from_path(path)
+        .map_err(|error| named(&format_args!("cannot be read: {error}")))?;
+    let mut rows = Vec::new();
+    for (index, record) in reader.records().enumerate() {
+        let record = record.map_err(|error| named(&format_args!("cannot be read: {error}")))?;
+        let number = |column: usize| record.get(column).and_then(|text| text.parse::<f64>().ok());
+        match (number(0), number(1)) {
+            (Some(radius), Some(value)) => rows.push([radius, value]),
+            _ if index == 0 => {}
+            _ => {
+                let line = record.position().map_or(0, csv::Position::line);
+                return Err(named(&format_args!("has no two numbers in line {line}")));
+            }
+        }
+    }
+    Ok(rows)
+}

@@ -1,0 +1,199 @@
+//! What a bell is, to all who use one.
+
+use std::fmt;
+use std::sync::Arc;
+
+use glam::DVec2;
+
+use super::cosine_squared::CosineSquared;
+use super::gaussian::Gaussian;
+use super::parabola::Parabola;
+use super::paraboloid::Paraboloid;
+use super::{Profile, SineGaussian, VonMises, kappa};
+
+/// A bell: a ghost's profile.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Bell {
+    /// exp(−x²/2σx² − y²/2σy²).
+    Gaussian,
+    /// cos²(πx/2hx) cos²(πy/2hy) within |x| ≤ hx, |y| ≤ hy: the Hann window in two dimensions.
+    CosineSquared,
+    /// (1 − x²/hx²)(1 − y²/hy²) within |x| ≤ hx, |y| ≤ hy; its floor is a rectangle.
+    Parabola,
+    /// 1 − x²/ρx² − y²/ρy² where that is positive; its floor is an ellipse.
+    Paraboloid,
+    /// The periodic bell with one lobe a period.
+    VonMises(VonMises),
+    /// The prototype's "periodic Gaussian", which has two lobes a period.
+    SineGaussian(SineGaussian),
+    /// A radial profile, as a table.
+    Profile(Arc<Profile>),
+}
+
+impl Bell {
+    /// What the bell is, mathematically.
+    pub fn shape(&self) -> &dyn Shape {
+        match self {
+            Self::Gaussian => &Gaussian,
+            Self::CosineSquared => &CosineSquared,
+            Self::Parabola => &Parabola,
+            Self::Paraboloid => &Paraboloid,
+            Self::VonMises(bell) => bell,
+            Self::SineGaussian(bell) => bell,
+            Self::Profile(profile) => &**profile,
+        }
+    }
+
+    /// Which bell it is, as `shaders/bells/any.glsl` counts them.
+    pub(crate) fn kind(&self) -> u32 {
+        match self {
+            Self::Gaussian => 0,
+            Self::CosineSquared => 1,
+            Self::Parabola => 2,
+            Self::Paraboloid => 3,
+            Self::VonMises(_) => 4,
+            Self::SineGaussian(_) => 5,
+            Self::Profile(_) => 6,
+        }
+    }
+
+    /// One bell of each kind, in this order, those with parameters by an example: the registry that
+    /// tests walk.
+    pub fn examples() -> Vec<Self> {
+        let period = DVec2::new(4.0, 3.0);
+        vec![
+            Self::Gaussian,
+            Self::CosineSquared,
+            Self::Parabola,
+            Self::Paraboloid,
+            Self::VonMises(VonMises { period }),
+            Self::SineGaussian(SineGaussian { period, mean: 0.5 }),
+            Self::Profile(Arc::new(Profile::example())),
+        ]
+    }
+}
+
+impl fmt::Display for Bell {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.shape().name())
+    }
+}
+
+impl serde::Serialize for Bell {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.shape().name())
+    }
+}
+
+/// A bell, mathematically. Its largest absolute value is 1. Offsets, sizes and periods are in one unit, whichever.
+pub trait Shape: Sync {
+    /// The name that files and reports use.
+    fn name(&self) -> &'static str;
+
+    /// The bell's file in `shaders/`: it defines `bell_value` and, unless [`Shape::tabulated`], `bell_coefficient`.
+    fn shader(&self) -> &'static str;
+
+    /// The bell at an offset from its centre.
+    fn value(&self, offset: DVec2, size: DVec2) -> f64;
+
+    /// A bound of the bell along one axis: no value at offsets of at least (x, y) is beyond `along(x) * along(y)`.
+    fn along(&self, distance: f64, size: f64) -> f64;
+
+    /// A bound of what the copies of [`Shape::along`], `period` apart, add within `distance` < `period` of the centre.
+    fn wrap(&self, period: f64, distance: f64, size: f64) -> f64;
+
+    /// How steep the bell is at most at an offset of at least `distance` sizes along an axis, for each size.
+    fn steepest(&self, distance: f64) -> f64;
+
+    /// ∫∫ over the plane; over one period, for a periodic bell.
+    fn integral(&self, size: DVec2) -> f64;
+
+    /// The mean square distance from the centre along one axis, in sizes squared; what a light's extent adds to.
+    fn variance(&self) -> f64;
+
+    /// How the series comes about.
+    fn modes(&self) -> Modes<'_>;
+
+    /// Whether the coefficients come from a table that ghosts of one size share, instead of a formula in GLSL.
+    fn tabulated(&self) -> bool {
+        true
+    }
+
+    /// The period that the bell is defined with, for those that are periodic themselves.
+    fn period(&self) -> Option<DVec2> {
+        None
+    }
+
+    /// What `bell_value` needs to know beside offset and size.
+    fn parameters(&self) -> Vec<[f32; 4]> {
+        Vec::new()
+    }
+}
+
+/// How the coefficients of a bell are found.
+#[derive(Clone, Copy)]
+pub enum Modes<'a> {
+    /// The bell is a product of one factor for each axis.
+    Product(&'a dyn Factor),
+    /// The bell depends on the radius alone, the axes scaled by the sizes.
+    Radial(&'a dyn Radial),
+}
+
+/// A factor u of a product bell, along one axis. Sizes are in periods.
+pub trait Factor: Sync {
+    /// a_n and b_n for n = 0 ..= `highest`.
+    fn coefficients(&self, highest: u32, size: f64) -> Vec<[f64; 2]>;
+
+    /// At index N, for N = 0 ..= `highest`, an upper bound of Σ_{n>N} 2|a_n + i b_n| for every size from `size` to √2
+    /// times that (of `size` alone, for a tabulated bell). No series cut after N is further off than that.
+    fn tails(&self, highest: u32, size: f64) -> Vec<f64>;
+
+    /// An upper bound of |a_0| at `size`, and together with the first of the tails of the sum of all |a_n + i b_n| at any
+    /// of the same sizes.
+    fn mean(&self, size: f64) -> f64;
+
+    /// About the harmonic beyond which no more than `error` is left.
+    fn degree(&self, error: f64, size: f64) -> f64;
+}
+
+/// A bell of the radius alone; lengths are in sizes.
+pub trait Radial: Sync {
+    /// ĝ(z) = 2π ∫ r g(r) J0(zr) dr, z in radians for each size.
+    fn transform(&self, z: f64) -> f64;
+
+    /// An upper bound of how far the series is off at any point if it has all modes below `z`, on a lattice of modes
+    /// whose cells have the half diagonal `cell`, in the same unit.
+    fn beyond(&self, z: f64, cell: f64) -> f64;
+}
+
+impl Modes<'_> {
+    /// The coefficients of the kept modes, harmonic by harmonic of x, of a size in periods: what stands before c_n c_m,
+    /// s_n s_m, c_n s_m and s_n c_m in the bell's series about its centre, the weight κ included.
+    pub fn table(&self, counts: &[u32], size: DVec2) -> Vec<[f64; 4]> {
+        let highest = counts.iter().max().map_or(0, |&most| most.max(1) - 1);
+        match self {
+            Self::Product(factor) => {
+                let x = factor.coefficients(counts.len().max(1) as u32 - 1, size.x);
+                let y = factor.coefficients(highest, size.y);
+                let product = |n: usize, m: usize| {
+                    let ([a, b], [c, d], kappa) = (x[n], y[m], kappa(n as u32, m as u32));
+                    [kappa * a * c, kappa * b * d, kappa * a * d, kappa * b * c]
+                };
+                modes(counts).map(|(n, m)| product(n as usize, m as usize)).collect()
+            }
+            Self::Radial(radial) => {
+                let turn = std::f64::consts::TAU * size;
+                let volume = size.element_product();
+                let coefficient = |(n, m)| {
+                    let z = (turn * DVec2::new(f64::from(n), f64::from(m))).length();
+                    [kappa(n, m) * volume * radial.transform(z), 0.0, 0.0, 0.0]
+                };
+                modes(counts).map(coefficient).collect()
+            }
+        }
+    }
+}
+
+fn modes(counts: &[u32]) -> impl Iterator<Item = (u32, u32)> {
+    (0..).zip(counts).flat_map(|(n, &count)| (0..count).map(move |m| (n, m)))
+}

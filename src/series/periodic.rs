@@ -1,0 +1,218 @@
+//! Bells that are periodic themselves, with the period of the series: they have no copies, and no meaning without it.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::DVec2;
+
+use super::bell::{Factor, Modes, Shape};
+use super::special::ive_all;
+use super::tails::summed;
+
+/// The von Mises bell exp(κ (cos ωx − 1)), κ = 1/(ωσ)², along each axis: one lobe a period, the Gaussian of size σ where
+/// that is small beside the period. It is what the prototype's periodic Gaussian was meant to be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VonMises {
+    /// Its period in x and y.
+    pub period: DVec2,
+}
+
+/// The prototype's periodic Gaussian exp(−(sin ωx − μ)²/2(ωσ)²) along each axis. For |μ| < 1 it has two lobes a period, at
+/// arcsin μ and π − arcsin μ; another μ deforms it instead of moving it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SineGaussian {
+    /// Its period in x and y; 2π in the prototype's notes.
+    pub period: DVec2,
+    /// μ, the sine that it is brightest at; from −1 to 1.
+    pub mean: f64,
+}
+
+impl VonMises {
+    /// The factor at x periods from its centre, of a size in periods.
+    fn factor(x: f64, size: f64) -> f64 {
+        // 1 − cos = 2 sin²(half), which does not cancel.
+        (-2.0 * ((PI * x).sin() / (TAU * size)).powi(2)).exp()
+    }
+}
+
+impl SineGaussian {
+    /// The factor at x periods from its centre, of a size in periods.
+    fn factor(&self, x: f64, size: f64) -> f64 {
+        (-0.5 * (((TAU * x).sin() - self.mean) / (TAU * size)).powi(2)).exp()
+    }
+}
+
+/// Samples a period by which a smooth factor's coefficients up to `highest` are right to the last bits: what aliases onto
+/// them is beyond harmonic 2/σ, where a Gaussian of size σ has nothing left.
+fn samples(highest: u32, size: f64) -> u32 {
+    let needed = f64::from(highest) + (2.0 / size).min(1e6) + 32.0;
+    (needed as u32).next_power_of_two()
+}
+
+/// a_n and b_n of a smooth function of period 1 by the trapezium rule, which converges faster than any power.
+fn by_samples(highest: u32, samples: u32, function: impl Fn(f64) -> f64) -> Vec<[f64; 2]> {
+    let turn = |i: u32| f64::from(i) / f64::from(samples);
+    let values: Vec<f64> = (0..samples).map(|i| function(turn(i))).collect();
+    let circle: Vec<(f64, f64)> = (0..samples).map(|i| (TAU * turn(i)).sin_cos()).collect();
+    let coefficient = |n: u32| {
+        let mut sum = [0.0; 2];
+        for (i, value) in (0..samples).zip(&values) {
+            // A power of two samples: the remainder is a mask, and wrapping does no harm.
+            let (sin, cos) = circle[(n.wrapping_mul(i) & (samples - 1)) as usize];
+            sum[0] += value * cos;
+            sum[1] += value * sin;
+        }
+        sum.map(|sum| sum / f64::from(samples))
+    };
+    (0..=highest).map(coefficient).collect()
+}
+
+/// The sum of |a_n + i b_n| beyond each harmonic, to where nothing is left.
+fn tails(factor: &dyn Factor, highest: u32, size: f64) -> Vec<f64> {
+    let last = highest + (2.0 / size).min(1e5) as u32;
+    let coefficients = factor.coefficients(last, size);
+    summed(highest, last, 0.0, |n| {
+        let [a, b] = coefficients[n as usize];
+        2.0 * a.hypot(b)
+    })
+}
+
+/// Where a Gaussian of the same size has no more than ε left.
+fn degree(error: f64, size: f64) -> f64 {
+    (1.0 / error).max(3.0).ln().sqrt() / (std::f64::consts::SQRT_2 * PI * size) + 2.0
+}
+
+impl Shape for VonMises {
+    fn name(&self) -> &'static str {
+        "von-mises"
+    }
+
+    fn shader(&self) -> &'static str {
+        "bells/von_mises.glsl"
+    }
+
+    fn value(&self, offset: DVec2, size: DVec2) -> f64 {
+        let (x, size) = (offset / self.period, size / self.period);
+        Self::factor(x.x, size.x) * Self::factor(x.y, size.y)
+    }
+
+    /// It comes back after a period.
+    fn along(&self, _distance: f64, _size: f64) -> f64 {
+        1.0
+    }
+
+    fn wrap(&self, _period: f64, _distance: f64, _size: f64) -> f64 {
+        0.0
+    }
+
+    fn steepest(&self, _distance: f64) -> f64 {
+        0.61
+    }
+
+    fn integral(&self, size: DVec2) -> f64 {
+        let size = size / self.period;
+        let mean = |size: f64| self.coefficients(0, size)[0][0];
+        self.period.element_product() * mean(size.x) * mean(size.y)
+    }
+
+    fn variance(&self) -> f64 {
+        1.0
+    }
+
+    fn modes(&self) -> Modes<'_> {
+        Modes::Product(self)
+    }
+
+    fn period(&self) -> Option<DVec2> {
+        Some(self.period)
+    }
+
+    fn parameters(&self) -> Vec<[f32; 4]> {
+        vec![[1.0 / self.period.x as f32, 1.0 / self.period.y as f32, 0.0, 0.0]]
+    }
+}
+
+impl Factor for VonMises {
+    /// a_n = exp(−κ) I_n(κ).
+    fn coefficients(&self, highest: u32, size: f64) -> Vec<[f64; 2]> {
+        ive_all(highest, (TAU * size).powi(-2)).into_iter().map(|mean| [mean, 0.0]).collect()
+    }
+
+    fn tails(&self, highest: u32, size: f64) -> Vec<f64> {
+        tails(self, highest, size)
+    }
+
+    fn mean(&self, size: f64) -> f64 {
+        self.coefficients(0, size)[0][0]
+    }
+
+    fn degree(&self, error: f64, size: f64) -> f64 {
+        degree(error, size)
+    }
+}
+
+impl Shape for SineGaussian {
+    fn name(&self) -> &'static str {
+        "sine-gaussian"
+    }
+
+    fn shader(&self) -> &'static str {
+        "bells/sine_gaussian.glsl"
+    }
+
+    fn value(&self, offset: DVec2, size: DVec2) -> f64 {
+        let (x, size) = (offset / self.period, size / self.period);
+        self.factor(x.x, size.x) * self.factor(x.y, size.y)
+    }
+
+    fn along(&self, _distance: f64, _size: f64) -> f64 {
+        1.0
+    }
+
+    fn wrap(&self, _period: f64, _distance: f64, _size: f64) -> f64 {
+        0.0
+    }
+
+    fn steepest(&self, _distance: f64) -> f64 {
+        0.61
+    }
+
+    fn integral(&self, size: DVec2) -> f64 {
+        let size = size / self.period;
+        let mean = |size: f64| self.coefficients(0, size)[0][0];
+        self.period.element_product() * mean(size.x) * mean(size.y)
+    }
+
+    fn variance(&self) -> f64 {
+        1.0
+    }
+
+    fn modes(&self) -> Modes<'_> {
+        Modes::Product(self)
+    }
+
+    fn period(&self) -> Option<DVec2> {
+        Some(self.period)
+    }
+
+    fn parameters(&self) -> Vec<[f32; 4]> {
+        vec![[1.0 / self.period.x as f32, 1.0 / self.period.y as f32, self.mean as f32, 0.0]]
+    }
+}
+
+impl Factor for SineGaussian {
+    fn coefficients(&self, highest: u32, size: f64) -> Vec<[f64; 2]> {
+        by_samples(highest, samples(highest, size), |x| self.factor(x, size))
+    }
+
+    fn tails(&self, highest: u32, size: f64) -> Vec<f64> {
+        tails(self, highest, size)
+    }
+
+    fn mean(&self, size: f64) -> f64 {
+        self.coefficients(0, size)[0][0]
+    }
+
+    fn degree(&self, error: f64, size: f64) -> f64 {
+        degree(error, size)
+    }
+}

@@ -1,0 +1,220 @@
+//! A radial profile that someone measured or drew, as a table.
+//!
+//! Between its rows the profile is linear in r², so that it is smooth at the centre, and a sum of paraboloids: every row
+//! at which the slope b = dg/d(r²) changes by κ is a paraboloid of that radius, κ (rᵢ² − r²). The Hankel transform is
+//! therefore a sum of theirs, exact for the profile as it is understood here.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::DVec2;
+
+use super::bell::{Modes, Radial, Shape};
+use super::paraboloid::cut_off;
+use super::special::{bessel_j, paraboloid_kernel};
+use super::tails::copies;
+
+/// Most rows of a table.
+pub const MOST_ROWS: usize = 4096;
+
+/// Steps of the table of what lies beyond a frequency: their width times the profile's radius, and how many there are.
+const STEP: f64 = 0.25;
+const STEPS: usize = 4000;
+
+/// A radial profile. Its radii are in sizes; beyond the last it is 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Profile {
+    /// From 0 on, ascending.
+    radii: Vec<f64>,
+    /// The largest absolute value is 1.
+    values: Vec<f64>,
+    /// dg/d(r²) from each row to the next; 0 after the last.
+    slopes: Vec<f64>,
+    /// The largest absolute value from each row on.
+    reach: Vec<f64>,
+    /// ∫ |ĝ|, and ∫ z |ĝ|, from each step on, with the largest |ĝ| from there on.
+    beyond: Vec<[f64; 2]>,
+}
+
+impl Profile {
+    /// A profile from rows of radius and value. Where the first radius is not 0, the profile is flat up to it. The values
+    /// are divided by the largest of them.
+    ///
+    /// # Errors
+    /// What is wrong with the rows, for people: radii that do not ascend, fewer than two rows or more than
+    /// [`MOST_ROWS`], numbers that are not finite, nothing but zeros.
+    pub fn new(rows: &[[f64; 2]]) -> Result<Self, String> {
+        if rows.len() < 2 || rows.len() > MOST_ROWS {
+            return Err(format!("a profile has 2 to {MOST_ROWS} rows, and this one has {}", rows.len()));
+        }
+        if let Some(row) = rows.iter().position(|row| !row.iter().all(|x| x.is_finite()) || row[0] < 0.0) {
+            let [radius, value] = rows[row];
+            return Err(format!("row {} of the profile has the radius {radius} and the value {value}", row + 1));
+        }
+        if let Some(row) = rows.windows(2).position(|pair| pair[1][0] <= pair[0][0]) {
+            return Err(format!("the profile's radii do not ascend at row {}", row + 2));
+        }
+        let peak = rows.iter().fold(0.0f64, |peak, row| peak.max(row[1].abs()));
+        if peak == 0.0 {
+            return Err("the profile is zero everywhere".into());
+        }
+        let mut rows = rows.to_vec();
+        if rows[0][0] > 0.0 {
+            rows.insert(0, [0.0, rows[0][1]]);
+        }
+        Ok(Self::from_rows(&rows, peak))
+    }
+
+    fn from_rows(rows: &[[f64; 2]], peak: f64) -> Self {
+        let radii: Vec<f64> = rows.iter().map(|row| row[0]).collect();
+        let values: Vec<f64> = rows.iter().map(|row| row[1] / peak).collect();
+        let mut slopes: Vec<f64> = (1..rows.len())
+            .map(|i| (values[i] - values[i - 1]) / (radii[i] * radii[i] - radii[i - 1] * radii[i - 1]))
+            .collect();
+        slopes.push(0.0);
+        let mut reach: Vec<f64> = values.iter().map(|value| value.abs()).collect();
+        for i in (1..reach.len()).rev() {
+            reach[i - 1] = reach[i - 1].max(reach[i]);
+        }
+        let mut profile = Self { radii, values, slopes, reach, beyond: Vec::new() };
+        profile.beyond = profile.integrals();
+        profile
+    }
+
+    /// A soft disc, for tests.
+    pub(super) fn example() -> Self {
+        let rows = [[0.0, 1.0], [0.3, 0.9], [0.6, 0.45], [0.85, 0.1], [1.0, 0.0]];
+        let peak = 1.0;
+        Self::from_rows(&rows, peak)
+    }
+
+    fn radius(&self) -> f64 {
+        self.radii[self.radii.len() - 1]
+    }
+
+    /// The row at or before a radius.
+    fn row(&self, radius: f64) -> usize {
+        self.radii.partition_point(|&r| r <= radius).max(1) - 1
+    }
+
+    fn at(&self, radius: f64) -> f64 {
+        if radius > self.radius() {
+            return 0.0;
+        }
+        let row = self.row(radius);
+        self.values[row] + self.slopes[row] * (radius * radius - self.radii[row] * self.radii[row])
+    }
+
+    /// How much the slope changes at each row, after the first.
+    fn kinks(&self) -> impl Iterator<Item = (f64, f64)> {
+        (1..self.radii.len()).map(|i| (self.radii[i], self.slopes[i] - self.slopes[i - 1]))
+    }
+
+    /// The step that profile falls by at its end.
+    fn step(&self) -> f64 {
+        self.values[self.values.len() - 1]
+    }
+
+    /// ∫ M dz and ∫ z M dz from each step of z on, where M is the largest |ĝ| from there on.
+    fn integrals(&self) -> Vec<[f64; 2]> {
+        let width = STEP / self.radius();
+        // ĝ has nothing faster than the radius in it, so between steps it is hardly larger than at them.
+        let sampled: Vec<f64> = (0..=STEPS).map(|i| 1.05 * self.transform(width * i as f64).abs()).collect();
+        let mut beyond = vec![[0.0; 2]; STEPS + 1];
+        let mut largest = sampled[STEPS];
+        for i in (0..STEPS).rev() {
+            largest = largest.max(sampled[i]);
+            let next = beyond[i + 1];
+            beyond[i] = [next[0] + width * largest, next[1] + width * (i as f64 + 1.0) * width * largest];
+        }
+        beyond
+    }
+
+    /// What the kinks and the step leave beyond z.
+    fn cut_off(&self, z: f64) -> f64 {
+        let kinks: f64 = self.kinks().map(|(radius, kink)| kink.abs() * radius * radius * cut_off(z * radius)).sum();
+        kinks + self.step().abs() * (0.6 + 1.0 / (z * self.radius()).sqrt())
+    }
+}
+
+impl Shape for Profile {
+    fn name(&self) -> &'static str {
+        "profile"
+    }
+
+    fn shader(&self) -> &'static str {
+        "bells/profile.glsl"
+    }
+
+    fn value(&self, offset: DVec2, size: DVec2) -> f64 {
+        self.at((offset / size).length())
+    }
+
+    /// The radius is not below either offset, so the root of what both allow bounds the profile.
+    fn along(&self, distance: f64, size: f64) -> f64 {
+        let radius = (distance / size).abs();
+        if radius > self.radius() {
+            return 0.0;
+        }
+        let later = self.reach.get(self.row(radius) + 1).copied().unwrap_or(0.0);
+        self.at(radius).abs().max(later).sqrt()
+    }
+
+    fn wrap(&self, period: f64, distance: f64, size: f64) -> f64 {
+        copies(period, distance, size * self.radius(), |x| self.along(x, size))
+    }
+
+    fn steepest(&self, distance: f64) -> f64 {
+        let later = (0..self.radii.len() - 1).filter(|&i| self.radii[i + 1] > distance);
+        later.map(|i| 2.0 * self.slopes[i].abs() * self.radii[i + 1]).fold(0.0, f64::max)
+    }
+
+    fn integral(&self, size: DVec2) -> f64 {
+        self.transform(0.0) * size.element_product()
+    }
+
+    /// π ∫ r³ g dr over the integral; 0 where that is negative, which no light that spreads has.
+    fn variance(&self) -> f64 {
+        let part = |i: usize| {
+            let [near, far] = [self.radii[i], self.radii[i + 1]];
+            let constant = self.values[i] - self.slopes[i] * near * near;
+            constant * (far.powi(4) - near.powi(4)) / 4.0 + self.slopes[i] * (far.powi(6) - near.powi(6)) / 6.0
+        };
+        let moment: f64 = (0..self.radii.len() - 1).map(part).sum();
+        (PI * moment / self.transform(0.0)).max(0.0)
+    }
+
+    fn modes(&self) -> Modes<'_> {
+        Modes::Radial(self)
+    }
+
+    /// How many rows there are; then for each its r², its value, and the slope to the next.
+    fn parameters(&self) -> Vec<[f32; 4]> {
+        let mut table = vec![[self.radii.len() as f32, 0.0, 0.0, 0.0]];
+        let rows = self.radii.iter().zip(&self.values).zip(&self.slopes);
+        table.extend(rows.map(|((r, value), slope)| [(r * r) as f32, *value as f32, *slope as f32, 0.0]));
+        table
+    }
+}
+
+impl Radial for Profile {
+    /// Twice by parts, with ∫ r² J1(qr) dr = r² J2(qr)/q: the step at the end as a disc, every kink as a paraboloid.
+    fn transform(&self, z: f64) -> f64 {
+        let end = z * self.radius();
+        let disc = if end < 1e-4 { 0.5 } else { bessel_j(1, end) / end };
+        let kinks: f64 =
+            self.kinks().map(|(radius, kink)| 0.25 * kink * radius.powi(4) * paraboloid_kernel(z * radius)).sum();
+        TAU * (self.step() * self.radius() * self.radius() * disc + kinks)
+    }
+
+    /// The smaller of what the kinks leave, which falls slowly, and of all that is left, which falls fast where the
+    /// table is smooth and ends where its rows show.
+    fn beyond(&self, z: f64, cell: f64) -> f64 {
+        let kinks = self.cut_off(z);
+        let width = STEP / self.radius();
+        // A mode stands for its cell, in which |ĝ| may be as large as half a diagonal further in.
+        let first = ((z - 2.0 * cell) / width).floor().max(0.0) as usize;
+        let Some([constant, linear]) = self.beyond.get(first) else { return kinks };
+        let all = (linear + cell * constant) / TAU + self.cut_off(width * STEPS as f64);
+        kinks.min(all)
+    }
+}

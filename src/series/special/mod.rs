@@ -1,0 +1,21 @@
+//! Special functions in f64: what bells and their series are made of.
+//!
+//! | file | what |
+//! | --- | --- |
+//! | `bessel_j` | J_n of one order and of all orders |
+//! | `bessel_i` | e^−κ I_n(κ), the coefficients of the von Mises bell |
+//! | `zeros` | the zeros of J_0 |
+//! | `kernels` | the transforms of the parabola and of the paraboloid, safe at 0 |
+//! | `error_function` | erf, its approximation in the notes, and the windowed Gaussian's complex one |
+
+mod bessel_i;
+mod bessel_j;
+mod error_function;
+mod kernels;
+mod zeros;
+
+pub use bessel_i::{ive, ive_all};
+pub use bessel_j::{Factorial, bessel_j, bessel_j_all, bessel_j_series};
+pub use error_function::{erf, erf_7_1_26, re_erf_scaled};
+pub use kernels::{parabola_kernel, paraboloid_kernel};
+pub use zeros::{J0Zero, j0_zeros};
