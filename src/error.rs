@@ -21,6 +21,10 @@ pub enum Error {
     #[error("{} exists already; --force overwrites it", path.display())]
     Exists { path: PathBuf },
 
+    /// A folder that is to be filled holds something else already, and `--force` was not given.
+    #[error("the folder {} holds other files; name another, or --force writes among them", path.display())]
+    Occupied { path: PathBuf },
+
     /// A scene, light or lens file says something that it must not.
     #[error("{}: {reason}", path.display())]
     SceneFile { path: PathBuf, reason: String },
@@ -44,6 +48,10 @@ pub enum Error {
     /// The bench missed a bar, and was asked to hold them all.
     #[error("missed:\n  {}", missed.join("\n  "))]
     Missed { missed: Vec<String> },
+
+    /// A chart could not be drawn.
+    #[error("the chart cannot be drawn: {0}")]
+    Chart(String),
 
     /// Options that do not go together.
     #[error("{0}")]

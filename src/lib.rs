@@ -18,6 +18,7 @@
 //! | [`mod@reference`] | the definition of the field in f64, by direct sum and by direct series |
 //! | [`compare`], [`certificate`] | the one error metric, and a rendered field held against the definition |
 //! | [`measure`] | arms timed in turns, and their ratios |
+//! | [`rex`] | the research prototype's experiments, as figures and numbers |
 //! | [`cli`] | the commands |
 
 pub mod certificate;
@@ -31,7 +32,9 @@ pub mod photo;
 pub mod plan;
 pub mod reference;
 pub mod renderer;
+pub mod rex;
 pub mod scene;
 pub mod series;
+mod target;
 
 pub use error::{Error, Result};

@@ -10,10 +10,10 @@ mod stage;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use super::{BackendChoice, stdout, target};
+use super::{BackendChoice, stdout};
 use crate::gpu::Device;
 use crate::measure::Rounds;
-use crate::{Error, Result};
+use crate::{Error, Result, target};
 
 use report::Report;
 use stage::Stage;

@@ -7,9 +7,9 @@ mod lights;
 mod numbers;
 mod presets;
 mod progress;
+mod rex;
 mod shell;
 mod stdout;
-mod target;
 
 use clap::{Parser, Subcommand};
 
@@ -42,6 +42,7 @@ enum Command {
     Lights(lights::Args),
     Presets(presets::Args),
     Bench(bench::Args),
+    Rex(rex::Args),
     Info(info::Args),
     Completions(shell::CompletionsArgs),
     Man(shell::ManArgs),
@@ -57,6 +58,7 @@ pub fn run(cli: Cli) -> Result<()> {
         Command::Lights(args) => lights::run(&args),
         Command::Presets(args) => presets::run(&args),
         Command::Bench(args) => bench::run(&args),
+        Command::Rex(args) => rex::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Completions(args) => shell::completions(&args),
         Command::Man(args) => shell::man(&args),

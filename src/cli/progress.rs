@@ -1,5 +1,6 @@
 //! A line that says what goes on, on a terminal, when it takes longer than a second.
 
+use std::borrow::Cow;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -31,7 +32,7 @@ impl Progress {
     }
 
     /// Says what goes on now.
-    pub fn step(&self, what: &'static str) {
+    pub fn step(&self, what: impl Into<Cow<'static, str>>) {
         self.bar.set_message(what);
     }
 }

@@ -17,6 +17,7 @@
 mod bell;
 mod cosine_squared;
 mod gaussian;
+pub mod numeric;
 mod parabola;
 mod paraboloid;
 mod periodic;

@@ -6,6 +6,7 @@ mod composite;
 mod evaluators;
 mod golden;
 mod layers;
+mod numeric;
 mod order;
 mod orientation;
 mod photo;

@@ -8,11 +8,11 @@ use super::report::Report;
 use super::{Args, summary};
 use crate::certificate::Certificate;
 use crate::cli::progress::Progress;
-use crate::cli::target;
 use crate::gpu::{Device, PassTime};
 use crate::photo::{self, Photo, WriteOptions};
 use crate::plan::{self, Plan, Request};
 use crate::renderer::{Renderer, Settings};
+use crate::target;
 use crate::{Error, Result};
 
 /// What a run has come to know, for the summary and the report.

@@ -1,4 +1,4 @@
-//! Text files that a command writes: beside the target, then renamed.
+//! Small files that a command writes whole: beside the target, then renamed.
 
 use std::io::Write as _;
 use std::path::Path;
@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::{Error, Result};
 
-/// Whether a text file may be written: asked before the long work starts.
+/// Whether a file may be written: asked before the long work starts.
 ///
 /// # Errors
 /// [`Error::Exists`] where it is there and must not be replaced, [`Error::Write`] where its folder is missing.
@@ -37,11 +37,19 @@ pub fn write_json(path: &Path, value: &impl Serialize, overwrite: bool) -> Resul
 /// # Errors
 /// Those of [`check`], and [`Error::Write`] where the disk is full or the system refuses.
 pub fn write_text(path: &Path, text: &str, overwrite: bool) -> Result<()> {
+    write(path, text.as_bytes(), overwrite)
+}
+
+/// Writes bytes.
+///
+/// # Errors
+/// Those of [`check`], and [`Error::Write`] where the disk is full or the system refuses.
+pub fn write(path: &Path, bytes: &[u8], overwrite: bool) -> Result<()> {
     check(path, overwrite)?;
     let refused = |error: std::io::Error| Error::write(path, error);
     if path.exists() && !path.is_file() {
         // A pipe or a device has no beside.
-        return std::fs::write(path, text).map_err(refused);
+        return std::fs::write(path, bytes).map_err(refused);
     }
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
@@ -51,7 +59,7 @@ pub fn write_text(path: &Path, text: &str, overwrite: bool) -> Result<()> {
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
     let mut file = builder.prefix(".vglare-").tempfile_in(folder(path)).map_err(refused)?;
-    file.write_all(text.as_bytes()).map_err(refused)?;
+    file.write_all(bytes).map_err(refused)?;
     if overwrite {
         file.persist(path).map_err(|error| refused(error.error))?;
     } else {
