@@ -7,11 +7,18 @@
 //!
 //! To add one: the file, its `mod` line, and its line in `experiments!`.
 
+mod benchmark;
 mod book;
+mod chance;
 pub mod chart;
+mod cosine_2d;
+mod gaussian_2d;
 mod lab;
+mod normalize;
 mod page;
 mod parabola_1d;
+mod parabola_2d;
+mod plane;
 mod report;
 
 pub use book::Book;
@@ -57,6 +64,11 @@ macro_rules! experiments {
 // In the order in which `all` runs and shows them.
 experiments! {
     "parabola-1d" => Parabola1d(parabola_1d),
+    "parabola-2d" => Parabola2d(parabola_2d),
+    "cosine-2d" => Cosine2d(cosine_2d),
+    "gaussian-2d" => Gaussian2d(gaussian_2d),
+    "normalize" => Normalize(normalize),
+    "benchmark" => Benchmark(benchmark),
 }
 
 impl Experiment {

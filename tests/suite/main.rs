@@ -4,6 +4,7 @@ mod bells;
 mod cli;
 mod composite;
 mod evaluators;
+mod experiments;
 mod golden;
 mod layers;
 mod numeric;

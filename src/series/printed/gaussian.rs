@@ -96,6 +96,21 @@ impl GaussianForm {
         Self::KappaByOr,
     ];
 
+    /// As the tables name it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::HalfRange => "κ/(T1 T2) I J",
+            Self::OnePeriod => "κ/T² I J",
+            Self::OnePeriodFullRange => "κ/T² 2I 2J",
+            Self::Slices => "κ/(T1 T2) (2/T1) I (2/T2) J",
+            Self::NoKappa => "(2/T1) I (2/T2) J, no κ",
+            Self::Halves => "[a0/2 + Σ][b0/2 + Σ] without 4/T",
+            Self::EdgesWhole => "a00/4 + Σ, edges whole",
+            Self::EdgesDropped => "a00/4 + Σ, edges dropped",
+            Self::KappaByOr => "κ = 2 if n = 0 or m = 0",
+        }
+    }
+
     /// What I_n I_m is multiplied by.
     fn prefactor(self, period: DVec2, n: u32, m: u32) -> f64 {
         let area = period.element_product();
