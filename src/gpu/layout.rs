@@ -12,6 +12,7 @@ pub(crate) type Binding = (&'static str, u32);
 pub(crate) const PASS: Binding = ("BINDING_PASS", 0);
 /// What an evaluator has beside the pass that asks it.
 pub(crate) const EVALUATOR: Binding = ("BINDING_EVALUATOR", 1);
+pub(crate) const SAMPLES: Binding = ("BINDING_SAMPLES", 2);
 
 /// Shader storage blocks.
 pub(crate) const GHOSTS: Binding = ("BINDING_GHOSTS", 0);
@@ -22,6 +23,9 @@ pub(crate) const PHASES: Binding = ("BINDING_PHASES", 4);
 pub(crate) const PROBES: Binding = ("BINDING_PROBES", 5);
 pub(crate) const TABLE: Binding = ("BINDING_TABLE", 6);
 pub(crate) const SHAPES: Binding = ("BINDING_SHAPES", 7);
+/// Of passes that no evaluator is bound for meanwhile: eight numbers are all that GL 4.3 promises.
+pub(crate) const COEFFICIENTS: Binding = ("BINDING_COEFFICIENTS", 6);
+pub(crate) const SUMS: Binding = ("BINDING_SUMS", 7);
 
 /// Texture units.
 pub(crate) const PHOTO: Binding = ("UNIT_PHOTO", 0);
@@ -37,9 +41,10 @@ pub(crate) const RANGE: Binding = ("UNIT_RANGE", 8);
 pub(crate) const WORKBENCH: Binding = ("UNIT_WORKBENCH", 9);
 
 /// Every binding, for the head of every shader.
-pub(crate) const BINDINGS: [Binding; 19] = [
+pub(crate) const BINDINGS: [Binding; 22] = [
     PASS,
     EVALUATOR,
+    SAMPLES,
     GHOSTS,
     PARTIALS,
     SPECTRUM,
@@ -48,6 +53,8 @@ pub(crate) const BINDINGS: [Binding; 19] = [
     PROBES,
     TABLE,
     SHAPES,
+    COEFFICIENTS,
+    SUMS,
     PHOTO,
     FIELD,
     HARMONICS_X,

@@ -110,27 +110,39 @@ impl<'a> Decay<'a> {
 /// The modes whose coefficients are largest: all above a threshold, found by bisection. For a Gaussian they are an
 /// ellipse, for a bell whose coefficients fall like powers of n and of m a hyperbolic cross.
 fn kept_product(factor: &dyn Factor, size: DVec2, error: f64) -> Result<Vec<u32>> {
-    // Beyond either axis a part of the error is left out, and the rest within, where columns and rows are both high. A
-    // larger part would leave more modes within; a smaller one would make the degree higher.
-    let degrees = [size.x, size.y].map(|size| factor.degree(0.3 * error, size));
-    let widest = degrees[0].max(degrees[1]);
-    let highest = degrees.map(|degree| (degree.ceil() as u32).min(HIGHEST_DEGREE));
-    let (x, y) = (Axis::new(factor, highest[0], size.x), Axis::new(factor, highest[1], size.y));
-    let columns: Vec<f64> = (0..=highest[0] as usize).map(|n| x.coefficient(n)).collect();
-    let rows: Vec<f64> = (0..=highest[1] as usize).map(|m| y.coefficient(m)).collect();
+    let (x, y) = axes_within(factor, size, error)?;
+    let columns: Vec<f64> = (0..x.tails.len()).map(|n| x.coefficient(n)).collect();
+    let rows: Vec<f64> = (0..y.tails.len()).map(|m| y.coefficient(m)).collect();
     let largest = columns[0] * rows[0];
-    let (mut high, mut low) = (0.0, (1e-3 * error / (highest[0] + 1) as f64 / (highest[1] + 1) as f64 / largest).ln());
-    let whole = above(&columns, &rows, 0.0);
-    if beyond_product(&x, &y, &whole) > error {
-        return Err(too_high(widest));
-    }
+    let smallest = 1e-3 * error / (columns.len() * rows.len()) as f64;
+    let (mut high, mut low) = (0.0, (smallest / largest).ln());
     for _ in 0..16 {
         let middle = 0.5 * (low + high);
         let counts = above(&columns, &rows, largest * f64::exp(middle));
         if beyond_product(&x, &y, &counts) > error { high = middle } else { low = middle }
     }
     let counts = above(&columns, &rows, largest * f64::exp(low));
-    Ok(if beyond_product(&x, &y, &counts) > error { whole } else { counts })
+    Ok(if beyond_product(&x, &y, &counts) > error { above(&columns, &rows, 0.0) } else { counts })
+}
+
+/// Both axes up to degrees whose rectangle leaves out less than the error.
+fn axes_within(factor: &dyn Factor, size: DVec2, error: f64) -> Result<(Axis, Axis)> {
+    // Beyond either axis a part of the error is left out; a smaller part makes the degree higher, and leaves more of
+    // the error to modes within the rectangle, where n and m are both high.
+    let mut least = f64::INFINITY;
+    for part in [0.3, 0.15, 0.07, 0.03] {
+        let degrees = [size.x, size.y].map(|size| factor.degree(part * error, size));
+        if degrees[0].max(degrees[1]) > f64::from(HIGHEST_DEGREE) {
+            least = least.min(degrees[0].max(degrees[1]));
+            break;
+        }
+        let [highest_x, highest_y] = degrees.map(|degree| degree.ceil() as u32);
+        let (x, y) = (Axis::new(factor, highest_x, size.x), Axis::new(factor, highest_y, size.y));
+        if x.tails[highest_x as usize] * y.total() + y.tails[highest_y as usize] * x.total() < 0.8 * error {
+            return Ok((x, y));
+        }
+    }
+    Err(too_high(least))
 }
 
 /// For each column how many rows have a product of at least the threshold; one at least. Both fall.

@@ -12,6 +12,8 @@ mod book;
 mod chance;
 pub mod chart;
 mod cosine_2d;
+mod fourier_1d;
+mod fourier_1d_gpu;
 mod gaussian_2d;
 mod lab;
 mod normalize;
@@ -64,6 +66,8 @@ macro_rules! experiments {
 // In the order in which `all` runs and shows them.
 experiments! {
     "parabola-1d" => Parabola1d(parabola_1d),
+    "fourier-1d" => Fourier1d(fourier_1d),
+    "fourier-1d-gpu" => Fourier1dGpu(fourier_1d_gpu),
     "parabola-2d" => Parabola2d(parabola_2d),
     "cosine-2d" => Cosine2d(cosine_2d),
     "gaussian-2d" => Gaussian2d(gaussian_2d),

@@ -143,7 +143,7 @@ fn tails_are_never_below_the_truth_and_not_far_above() {
                 for highest in (0..=60).rev() {
                     let bound = tails[highest];
                     assert!(
-                        bound >= truth * (1.0 - 1e-12) - 1e-13,
+                        bound >= truth * (1.0 - 1e-12) - 1e-12,
                         "{bell} tail at {highest}, {size}, {held}: {bound} {truth}"
                     );
                     if held == size && truth > 1e-12 {
