@@ -88,7 +88,8 @@ fn describe(report: &mut Report, args: &Args) {
         report.say(
             "The C++ as printed sets κ to 4 for every mode. Each ghost is then (u + α_0)(v + α_0) instead of u v, \
              α_0 = 0.262: a cross of streaks and a haze all over the plane. Its ω⁴ for ω³ moves the second harmonic by \
-             −35 %, and its loops end one harmonic early.",
+             −35 %, and its loops end one harmonic early. Without mode (0, 0) the haze falls below 0 and the notes' two \
+             ellipses stand out again.",
         );
     }
     report.parameter("T", PERIOD);

@@ -109,8 +109,7 @@ fn describe(report: &mut Report, args: &Args) {
     if args.as_printed {
         report.say(
             "As printed, prefactors of full-range and half-range integrals are mixed. Each form in the notes is a bell of \
-             the right shape and a wrong height, or stands on a pedestal and a cross. The notes' pictures show a peak of \
-             1, so their programs cannot have been what they print.",
+             the right shape and a wrong height, or stands on a pedestal and a cross.",
         );
     }
     report.parameter("σ", args.sigma);
