@@ -75,9 +75,9 @@ fn gaussian_2d_puts_the_bell_where_it_belongs_and_measures_the_printed_forms() {
     // f32 and, in the long period, what N = 20 leaves out.
     assert!(measure(&report, "(0, 0), T = 16: largest error against the bell and its copies") < 1e-6);
     assert!(measure(&report, "T = 16 × 32: largest error against the bell and its copies") < 1e-4);
-    // The copy at x = -11 at the left border, 3 σ from it: half a pixel inside.
+    // The copy at x = -11 at the left border, 3 σ from it, is worth 0.0111; half a pixel inside, 0.0049.
     let copy = measure(&report, "T = 16 × 32: largest error against the bell");
-    assert!((0.005..0.0112).contains(&copy), "{copy}");
+    assert!((0.004..0.0112).contains(&copy), "{copy}");
 
     // (5, -10) in 32 × 64 pixels over 16 × 32: right of the middle, and below it.
     let [column_, row] = brightest(field(&report, "off-centre-series"));
