@@ -2,6 +2,7 @@
 
 mod apply;
 mod bench;
+mod harmonics;
 mod info;
 mod lights;
 mod numbers;
@@ -41,6 +42,7 @@ enum Command {
     Apply(Box<apply::Args>),
     Lights(lights::Args),
     Presets(presets::Args),
+    Harmonics(Box<harmonics::Args>),
     Bench(bench::Args),
     Rex(rex::Args),
     Info(info::Args),
@@ -57,6 +59,7 @@ pub fn run(cli: Cli) -> Result<()> {
         Command::Apply(args) => apply::run(&args),
         Command::Lights(args) => lights::run(&args),
         Command::Presets(args) => presets::run(&args),
+        Command::Harmonics(args) => harmonics::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Rex(args) => rex::run(&args),
         Command::Info(args) => info::run(&args),

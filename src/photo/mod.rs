@@ -170,7 +170,7 @@ impl Photo {
     }
 
     /// The pixels of row `y` of the picture, transparent black where none are stored.
-    fn picture_row(&self, y: u32) -> std::borrow::Cow<'_, [[f32; 4]]> {
+    pub(crate) fn picture_row(&self, y: u32) -> std::borrow::Cow<'_, [[f32; 4]]> {
         let window = self.frame.window;
         let stored = usize::try_from(i64::from(y) - i64::from(window.y)).ok().filter(|&r| r < window.height as usize);
         let row = stored.map_or(&[][..], |r| &self.pixels[r * window.width as usize..][..window.width as usize]);

@@ -21,6 +21,7 @@ pub use cost::Cost;
 pub use lattice::{Lattice, MOST_NODES};
 pub use terms::Group;
 
+use period::Reach;
 use weigh::Weighed;
 
 /// Highest harmonic that a plan may use along one axis.
@@ -173,7 +174,7 @@ pub fn plan(ghosts: &[Ghost], asked: &Request) -> Result<Plan> {
         return Err(Error::Plan(format!("a tolerance of {} is not between 0 and 1", asked.tolerance)));
     }
     let request = &Request { period: own_period(ghosts, asked)?, ..*asked };
-    let weighed = weigh::weigh(ghosts, request);
+    let survey = Survey::new(ghosts, request);
     // A period or a degree asks for a series.
     let series = asked.period.is_some() || asked.degree.is_some();
     let wanted = |evaluator| match request.evaluator {
@@ -183,7 +184,7 @@ pub fn plan(ghosts: &[Ghost], asked: &Request) -> Result<Plan> {
     let mut candidates = Vec::new();
     let mut refusals = Vec::new();
     for evaluator in Evaluator::ALL.into_iter().filter(|&evaluator| wanted(evaluator)) {
-        match candidate(ghosts, &weighed, request, evaluator) {
+        match candidate(ghosts, &survey, request, evaluator) {
             Ok(plan) => candidates.push(plan),
             Err(error) => refusals.push(error),
         }
@@ -216,8 +217,25 @@ fn own_period(ghosts: &[Ghost], request: &Request) -> Result<Option<DVec2>> {
     Ok(period)
 }
 
+/// What all evaluators' plans begin with.
+struct Survey {
+    weighed: Weighed,
+    groups: Vec<Group>,
+    reaches: Vec<Reach>,
+}
+
+impl Survey {
+    fn new(ghosts: &[Ghost], request: &Request) -> Self {
+        let weighed = weigh::weigh(ghosts, request);
+        let groups = terms::group(ghosts, &weighed);
+        let reaches = period::reaches(ghosts, &weighed, request.frame);
+        Self { weighed, groups, reaches }
+    }
+}
+
 /// The plan that one evaluator asks for.
-fn candidate(ghosts: &[Ghost], weighed: &Weighed, request: &Request, evaluator: Evaluator) -> Result<Plan> {
+fn candidate(ghosts: &[Ghost], survey: &Survey, request: &Request, evaluator: Evaluator) -> Result<Plan> {
+    let weighed = &survey.weighed;
     let rounding = rounding::bound(ghosts, weighed, evaluator);
     // With the whole of the series given, there is nothing left to plan: the error is predicted as it comes.
     let given = request.period.is_some() && request.degree.is_some() && evaluator != Evaluator::Grid;
@@ -231,7 +249,7 @@ fn candidate(ghosts: &[Ghost], weighed: &Weighed, request: &Request, evaluator: 
         degree: [0; 2],
         counts: Vec::new(),
         terms: 0,
-        groups: Vec::new(),
+        groups: survey.groups.clone(),
         lattice: None,
         scale: weighed.scale,
         peaks: weighed.peaks.clone(),
@@ -239,9 +257,8 @@ fn candidate(ghosts: &[Ghost], weighed: &Weighed, request: &Request, evaluator: 
         predicted: Prediction { dropped: weighed.dropped_error, rounding, ..Prediction::default() },
         costs: Vec::new(),
     };
-    plan.groups = terms::group(ghosts, weighed);
     if evaluator != Evaluator::Direct {
-        plan_series(&mut plan, ghosts, weighed, request, usable)?;
+        plan_series(&mut plan, &survey.reaches, request, usable)?;
     }
     // `direct` takes eight ghosts a round, and a few rounds more to gather them.
     let rounds = match evaluator {
@@ -256,13 +273,12 @@ fn candidate(ghosts: &[Ghost], weighed: &Weighed, request: &Request, evaluator: 
     Ok(plan)
 }
 
-fn plan_series(plan: &mut Plan, ghosts: &[Ghost], weighed: &Weighed, request: &Request, usable: f64) -> Result<()> {
-    let reaches = period::reaches(ghosts, weighed, request.frame);
+fn plan_series(plan: &mut Plan, reaches: &[Reach], request: &Request, usable: f64) -> Result<()> {
     plan.period = match request.period {
         Some(period) => period,
-        None => period::shortest(&reaches, usable * share::PERIODISATION),
+        None => period::shortest(reaches, usable * share::PERIODISATION),
     };
-    plan.predicted.periodisation = period::error(&reaches, plan.period);
+    plan.predicted.periodisation = period::error(reaches, plan.period);
     if plan.evaluator != Evaluator::Grid {
         return plan_terms(plan, request, usable * share::TRUNCATION);
     }

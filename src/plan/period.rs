@@ -1,8 +1,10 @@
 //! The shortest period whose wrapped copies stay away from the picture.
 
-use std::collections::BTreeMap;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use super::weigh::Weighed;
 use crate::frame::Frame;
@@ -20,42 +22,85 @@ pub(super) struct Reach {
     weight: f64,
 }
 
-/// Gathers the ghosts into some hundreds of reaches, so that trying a period costs the same for any number of them.
-pub(super) fn reaches(ghosts: &[Ghost], weighed: &Weighed, frame: Frame) -> Vec<Reach> {
-    let (low, high) = frame.bounds();
-    let mut bells: Vec<&Bell> = Vec::new();
-    let mut bins: BTreeMap<(usize, [i32; 6]), Reach> = BTreeMap::new();
-    for (ghost, &weight) in ghosts.iter().zip(&weighed.weights).filter(|(_, weight)| **weight > 0.0) {
+impl Reach {
+    fn new(ghost: &Ghost, weight: f64, [low, high]: [DVec2; 2]) -> Self {
         let shape = ghost.bell.shape();
-        let bell = bells.iter().position(|&bell| *bell == ghost.bell).unwrap_or_else(|| {
-            bells.push(&ghost.bell);
-            bells.len() - 1
-        });
-        let farthest = (ghost.center - low).abs().max((high - ghost.center).abs());
         let offset = ghost.center.clamp(low, high) - ghost.center;
-        let nearest = DVec2::new(shape.along(offset.x, ghost.size.x), shape.along(offset.y, ghost.size.y));
-        let octave = |value: f64, steps: f64| (value.max(1e-300).log2() * steps).floor() as i32;
-        let key = [
-            octave(ghost.size.x, 4.0),
-            octave(ghost.size.y, 4.0),
-            octave(farthest.x, 8.0),
-            octave(farthest.y, 8.0),
-            octave(nearest.x, 1.0).max(-40),
-            octave(nearest.y, 1.0).max(-40),
-        ];
-        let reach = bins.entry((bell, key)).or_insert_with(|| Reach {
+        Self {
             bell: ghost.bell.clone(),
             size: ghost.size,
-            farthest,
-            nearest,
-            weight: 0.0,
-        });
-        reach.size = reach.size.max(ghost.size);
-        reach.farthest = reach.farthest.max(farthest);
-        reach.nearest = reach.nearest.max(nearest);
-        reach.weight += weight;
+            farthest: (ghost.center - low).abs().max((high - ghost.center).abs()),
+            nearest: DVec2::new(shape.along(offset.x, ghost.size.x), shape.along(offset.y, ghost.size.y)),
+            weight,
+        }
     }
-    bins.into_values().collect()
+
+    /// The bin that it belongs to: a few for each octave.
+    fn bin(&self) -> [u16; 6] {
+        // Exponent and first bits of the mantissa are the steps of a logarithm, near enough.
+        let octave = |value: f64, bits: u32| (value.max(1e-12).to_bits() >> (52 - bits)) as u16;
+        [
+            octave(self.size.x, 2),
+            octave(self.size.y, 2),
+            octave(self.farthest.x, 3),
+            octave(self.farthest.y, 3),
+            octave(self.nearest.x, 0),
+            octave(self.nearest.y, 0),
+        ]
+    }
+
+    /// The worst of both.
+    fn join(&mut self, other: &Self) {
+        self.size = self.size.max(other.size);
+        self.farthest = self.farthest.max(other.farthest);
+        self.nearest = self.nearest.max(other.nearest);
+        self.weight += other.weight;
+    }
+}
+
+/// Gathers the ghosts into some hundreds of reaches, so that trying a period costs the same for any number of them.
+pub(super) fn reaches(ghosts: &[Ghost], weighed: &Weighed, frame: Frame) -> Vec<Reach> {
+    let bounds = <[DVec2; 2]>::from(frame.bounds());
+    // The same chunks on any machine, joined in their order: the plan must not depend on how many cores there are.
+    let chunks = ghosts.par_chunks(CHUNK).zip(weighed.weights.par_chunks(CHUNK)).map(|(ghosts, weights)| {
+        let mut bins = Bins::default();
+        for (ghost, &weight) in ghosts.iter().zip(weights).filter(|(_, weight)| **weight > 0.0) {
+            bins.add(Reach::new(ghost, weight, bounds));
+        }
+        bins.reaches
+    });
+    let mut bins = Bins::default();
+    for reach in chunks.collect::<Vec<_>>().into_iter().flatten() {
+        bins.add(reach);
+    }
+    bins.reaches
+}
+
+/// Ghosts that one task gathers.
+const CHUNK: usize = 4096;
+
+/// Reaches, one for each bell and bin, in the order in which they first came.
+#[derive(Default)]
+struct Bins {
+    bells: Vec<Bell>,
+    places: HashMap<(usize, [u16; 6]), usize>,
+    reaches: Vec<Reach>,
+}
+
+impl Bins {
+    fn add(&mut self, reach: Reach) {
+        let bell = self.bells.iter().position(|bell| *bell == reach.bell).unwrap_or_else(|| {
+            self.bells.push(reach.bell.clone());
+            self.bells.len() - 1
+        });
+        match self.places.entry((bell, reach.bin())) {
+            Entry::Occupied(place) => self.reaches[*place.get()].join(&reach),
+            Entry::Vacant(place) => {
+                place.insert(self.reaches.len());
+                self.reaches.push(reach);
+            }
+        }
+    }
 }
 
 /// The shortest period along each axis that leaves at most half of the budget to its copies.

@@ -41,7 +41,7 @@ pub(super) fn group(ghosts: &[Ghost], weighed: &Weighed) -> Vec<Group> {
         });
         let size = match ghost.bell.shape().tabulated() {
             true => [ghost.size.x, ghost.size.y].map(|size| size.to_bits() as i64),
-            false => [ghost.size.x, ghost.size.y].map(|size| (2.0 * size.log2()).floor() as i64),
+            false => [ghost.size.x, ghost.size.y].map(half_octave),
         };
         let place = *places.entry((bell, size)).or_insert_with(|| {
             groups.push(Group {
@@ -61,6 +61,13 @@ pub(super) fn group(ghosts: &[Ghost], weighed: &Weighed) -> Vec<Group> {
         group.weight += weight;
     }
     groups
+}
+
+/// ⌊2 log2 x⌋ for a positive normal number, by its exponent.
+fn half_octave(x: f64) -> i64 {
+    let exponent = (x.to_bits() >> 52) as i64;
+    let mantissa = f64::from_bits(x.to_bits() & (u64::MAX >> 12) | 1f64.to_bits());
+    2 * exponent + i64::from(mantissa >= std::f64::consts::SQRT_2)
 }
 
 /// The whole rectangle of modes for every group: the prototype's choice, and that of a degree given by hand.

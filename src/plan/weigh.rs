@@ -9,7 +9,7 @@ use crate::reference;
 use crate::scene::Ghost;
 
 /// Evaluations of a bell that finding the scale may cost.
-const EFFORT: usize = 2_000_000;
+const EFFORT: usize = 600_000;
 /// Probes: at the pixels next to the ghosts that alone shine strongest, and on an even grid over the picture.
 const STRONGEST: usize = 48;
 const GRID: u32 = 6;
@@ -50,9 +50,9 @@ pub(super) fn weigh(ghosts: &[Ghost], request: &Request) -> Weighed {
     let instead = [largest, peak].into_iter().find(|&value| value > nothing).unwrap_or(1.0);
     let scale = scale.map(|value| if value > nothing { value } else { instead });
 
-    let mut weights: Vec<f64> = ghosts.iter().map(|ghost| peak_weight(ghost, scale)).collect();
+    let mut weights: Vec<f64> = ghosts.par_iter().map(|ghost| peak_weight(ghost, scale)).collect();
     let reached: Vec<f64> =
-        ghosts.iter().zip(&nearest).zip(&weights).map(|((ghost, &offset), w)| w * reached(ghost, offset)).collect();
+        ghosts.par_iter().zip(&nearest).zip(&weights).map(|((ghost, &offset), w)| w * reached(ghost, offset)).collect();
     let (dropped, dropped_error) = drop_faint(&mut weights, &reached, share::DROPPED * request.tolerance);
     Weighed { scale, peaks, weights, nearest, dropped, dropped_error }
 }
@@ -84,7 +84,7 @@ fn probes(ghosts: &[Ghost], nearest: &[DVec2], frame: Frame) -> Vec<[i32; 2]> {
     };
     let most = (EFFORT / ghosts.len().max(1)).clamp(4, STRONGEST + (GRID * GRID) as usize);
     let mut alone: Vec<(f64, usize)> = ghosts
-        .iter()
+        .par_iter()
         .zip(nearest)
         .enumerate()
         .map(|(k, (ghost, &offset))| {

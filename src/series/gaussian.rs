@@ -5,12 +5,22 @@ use std::f64::consts::{E, PI, SQRT_2, TAU};
 use glam::DVec2;
 
 use super::bell::{Factor, Modes, Shape};
+use super::special::re_erf_scaled;
 use super::tails::summed;
 
 /// √(2π).
 const SQRT_TAU: f64 = 2.506_628_274_631_000_5;
 
 pub(super) struct Gaussian;
+
+/// a_n of a Gaussian that is cut off half a period from its centre, of a size in periods: what the prototype's notes mean
+/// to integrate. Its series has a kink there, and falls like n⁻² instead of like a Gaussian.
+///
+/// √(2π) (σ/T) exp(−b²) Re erf(a + ib), a = T/(2√2σ), b = nωσ/√2.
+pub fn windowed_gaussian(n: u32, size: f64) -> f64 {
+    let (a, b) = (0.5 / (SQRT_2 * size), TAU * f64::from(n) * size / SQRT_2);
+    SQRT_TAU * size * re_erf_scaled(a, b)
+}
 
 impl Gaussian {
     fn coefficient(n: u32, size: f64) -> f64 {

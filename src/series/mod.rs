@@ -24,10 +24,12 @@ mod periodic;
 pub mod printed;
 mod profile;
 pub mod special;
+pub mod sphere;
 mod spline;
 mod tails;
 
 pub use bell::{Bell, Factor, Modes, Radial, Shape};
+pub use gaussian::windowed_gaussian;
 pub use periodic::{SineGaussian, VonMises};
 pub use profile::Profile;
 pub use spline::spline_error;

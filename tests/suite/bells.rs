@@ -7,11 +7,28 @@ use vglare::frame::Frame;
 use vglare::plan::{Evaluator, Request, plan};
 use vglare::reference;
 use vglare::scene::Ghost;
-use vglare::series::{Bell, Modes, SineGaussian, VonMises};
+use vglare::series::{Bell, Modes, SineGaussian, VonMises, windowed_gaussian};
 
 use crate::golden::{cases, coefficient, count, number};
 use crate::support::check::{Worst, within};
 use crate::support::{on_each_backend, scenes};
+
+#[test]
+fn windowed_gaussian_coefficients_are_the_golden_ones() {
+    let (mut worst, mut seen) = (Worst::default(), 0);
+    for case in cases(include_str!("../golden/gaussian_coeff.json")) {
+        let Some(half) = case.get("half_range_exact") else { continue };
+        let (sigma, period, n) = (number(&case["sigma"]), number(&case["T"]), count(&case["n"]));
+        // The golden integral is over half the period.
+        let error = (windowed_gaussian(n, sigma / period) - 2.0 * number(half) / period).abs();
+        let limit = 4e-15 * sigma / period * (1.0 + f64::from(n) * sigma / period);
+        assert!(error <= limit, "sigma {sigma}, T {period}, n {n}: {error:e} of {limit:e}");
+        worst.take(error / limit, || format!("sigma {sigma}, T {period}, n {n}"));
+        seen += 1;
+    }
+    assert!(seen > 20, "{seen}");
+    println!("worst share of the limit {worst}");
+}
 
 #[test]
 fn cosine_squared_coefficients_are_the_golden_ones() {

@@ -1,6 +1,7 @@
 //! The program as a user runs it: what it writes, what it says, what it exits with.
 
 mod bad_input;
+mod harmonics;
 mod outputs;
 mod refusals;
 

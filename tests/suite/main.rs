@@ -19,5 +19,6 @@ mod rounding;
 mod scale;
 mod scene;
 mod special;
+mod sphere;
 mod support;
 mod tiles;

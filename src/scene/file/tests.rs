@@ -195,3 +195,118 @@ fn a_lens_is_called_like_its_file_and_has_ghosts() {
         assert!(message.contains(what), "{message}");
     }
 }
+
+#[test]
+fn every_bell_has_a_name_in_files() {
+    let (_folder, path) = file(
+        "bells.toml",
+        r#"
+period = [4.0, 3.0]
+[[profile]]
+name = "spot"
+rows = [[0, 2], [0.5, 1], [1, 0]]
+[[ghost]]
+bell = "cosine-squared"
+center = [0, 0]
+size = 1
+radiance = [1, 1, 1]
+[[ghost]]
+bell = "parabola"
+center = [0, 0]
+size = 1
+radiance = [1, 1, 1]
+[[ghost]]
+bell = "paraboloid"
+center = [0, 0]
+size = 1
+radiance = [1, 1, 1]
+[[ghost]]
+bell = "von-mises"
+center = [0, 0]
+size = 1
+radiance = [1, 1, 1]
+[[ghost]]
+bell = "sine-gaussian"
+mean = 0.25
+center = [0, 0]
+size = 1
+radiance = [1, 1, 1]
+[[lens_ghost]]
+bell = "profile"
+profile = "spot"
+along = 1
+size = 0.5
+share = 0.1
+"#,
+    );
+    let scene = read_scene(&path).unwrap();
+    let names: Vec<_> = scene.ghosts.iter().map(|ghost| ghost.bell.to_string()).collect();
+    assert_eq!(names, ["cosine-squared", "parabola", "paraboloid", "von-mises", "sine-gaussian"]);
+    let Bell::SineGaussian(bell) = &scene.ghosts[4].bell else { panic!("{:?}", scene.ghosts[4].bell) };
+    assert_eq!((bell.mean, bell.period), (0.25, DVec2::new(4.0, 3.0)));
+    let shape = scene.lens_ghosts[0].bell.shape();
+    // The values are divided by the largest, and linear in r² between the rows.
+    let half_way = DVec2::new(0.5f64.sqrt() * 0.5, 0.0);
+    assert_eq!(shape.value(DVec2::ZERO, DVec2::ONE), 1.0);
+    assert!((shape.value(half_way, DVec2::ONE) - 0.75).abs() < 1e-12);
+}
+
+#[test]
+fn a_profile_may_stand_in_a_csv_file_beside() {
+    let (folder, path) = file("lens.toml", CSV_LENS);
+    fs::write(folder.path().join("spot.csv"), "# measured\nradius, value\n0.1, 4\n0.2, 1\n").unwrap();
+    let lens = read_lens(&path).unwrap();
+    let shape = lens.ghosts[0].bell.shape();
+    assert_eq!(shape.value(DVec2::new(0.05, 0.0), DVec2::ONE), 1.0);
+    assert_eq!(shape.value(DVec2::new(0.0, 0.2), DVec2::ONE), 0.25);
+    assert_eq!(shape.value(DVec2::new(0.0, 0.201), DVec2::ONE), 0.0);
+    for (rows, expected) in [
+        ("0, 1\nx, 2\n", "has no two numbers in line 2"),
+        ("0, 1\n", "this one has 1"),
+        ("0, 1\n1, 0.5\n1, 0\n", "do not ascend at row 3"),
+        ("0, 1\n1, nan\n", "row 2"),
+        ("0, 0\n1, 0\n", "zero everywhere"),
+        ("0, -1\n1, 0\n", "not positive"),
+    ] {
+        fs::write(folder.path().join("spot.csv"), rows).unwrap();
+        let reason = read_lens(&path).unwrap_err().to_string();
+        assert!(reason.contains(expected) && reason.contains("line "), "{expected:?} is not in {reason}");
+    }
+    fs::remove_file(folder.path().join("spot.csv")).unwrap();
+    let reason = read_lens(&path).unwrap_err().to_string();
+    assert!(reason.contains("spot.csv cannot be read"), "{reason}");
+}
+
+const CSV_LENS: &str = r#"
+[[profile]]
+name = "spot"
+file = "spot.csv"
+[[lens_ghost]]
+bell = "profile"
+profile = "spot"
+along = 1
+size = 1
+share = 0.1
+"#;
+
+#[test]
+fn bells_that_cannot_be_had_are_refused_in_their_line() {
+    let ghost = |bell: &str| format!("[[ghost]]\n{bell}\ncenter = [0, 0]\nsize = 1\nradiance = [1, 1, 1]");
+    let refusals: [(&str, &[&str]); 8] = [
+        ("bell = \"von-mises\"", &["line 2, column 8", "a von-mises bell is periodic", "`period`"]),
+        ("bell = \"sine-gaussian\"", &["line 2, column 8", "a sine-gaussian bell is periodic"]),
+        ("bell = \"profile\"", &["line 2, column 8", "needs `profile`"]),
+        ("bell = \"profile\"\nprofile = \"x\"", &["line 3, column 11", "no [[profile]] called \"x\""]),
+        ("profile = \"x\"", &["line 2, column 11", "belongs to"]),
+        ("bell = \"parabola\"\nmean = 0.5", &["line 3, column 8", "belongs to"]),
+        ("bell = \"sine-gaussian\"\nmean = 1.5", &["line 3, column 8", "from -1 to 1"]),
+        ("bell = \"sine-gaussian\"\nmean = inf", &["line 3, column 8", "finite"]),
+    ];
+    for (bell, expected) in refusals {
+        assert_refused(&ghost(bell), expected);
+    }
+    let both = "[[profile]]\nname = \"x\"\nrows = [[0, 1], [1, 0]]\nfile = \"x.csv\"";
+    assert_refused(both, &["line 2, column 8", "either `rows` or a `file`"]);
+    let twice = "[[profile]]\nname = \"x\"\nrows = [[0, 1], [1, 0]]\n".repeat(2);
+    assert_refused(&twice, &["line 5, column 8", "of that name already"]);
+}
