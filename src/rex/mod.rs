@@ -7,14 +7,21 @@
 //!
 //! To add one: the file, its `mod` line, and its line in `experiments!`.
 
+mod benchmark;
 mod book;
+mod chance;
 pub mod chart;
+mod cosine_2d;
 mod fourier_1d;
 mod fourier_1d_gpu;
+mod gaussian_2d;
 mod lab;
+mod normalize;
 mod page;
 mod parabola_1d;
+mod parabola_2d;
 mod paraboloid_bessel;
+mod plane;
 mod report;
 
 pub use book::Book;
@@ -63,6 +70,11 @@ experiments! {
     "fourier-1d" => Fourier1d(fourier_1d),
     "fourier-1d-gpu" => Fourier1dGpu(fourier_1d_gpu),
     "paraboloid-bessel" => ParaboloidBessel(paraboloid_bessel),
+    "parabola-2d" => Parabola2d(parabola_2d),
+    "cosine-2d" => Cosine2d(cosine_2d),
+    "gaussian-2d" => Gaussian2d(gaussian_2d),
+    "normalize" => Normalize(normalize),
+    "benchmark" => Benchmark(benchmark),
 }
 
 impl Experiment {

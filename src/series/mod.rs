@@ -22,6 +22,7 @@ pub mod numeric;
 mod parabola;
 mod paraboloid;
 mod periodic;
+pub mod printed;
 mod profile;
 pub mod special;
 pub mod sphere;
