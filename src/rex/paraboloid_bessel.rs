@@ -185,7 +185,7 @@ fn describe(report: &mut Report, args: &Args) {
     );
     report.say(
         "The closed-form two-dimensional spectrum of the same bell converges at the same rate, N' = N T/(2L) at equal \
-         error; it shifts exactly, needs no disc and no Bessel function beyond its table.",
+         error; it shifts exactly, needs no disc and no Bessel function beyond its table; by `grid` it is also the faster one.",
     );
     for (name, value) in [("A", args.a), ("B", args.b), ("L", args.radius), ("x₁", args.x[0]), ("x₂", args.x[1])] {
         report.parameter(name, value);

@@ -80,7 +80,7 @@ pub(super) fn sections(setting: &Setting) -> Table {
     table
 }
 
-/// The whole field on the device: Graf's form, and the closed form at the same error by `rows`.
+/// The whole field on the device: Graf's form, and the closed form at the same error by `rows` and by `grid`.
 pub(super) fn fields(lab: &mut Lab, setting: &Setting, size: u32, graf: &Measured) -> Result<Table> {
     let mut table = Table::new(
         "fields",
@@ -97,20 +97,23 @@ pub(super) fn fields(lab: &mut Lab, setting: &Setting, size: u32, graf: &Measure
     let ghosts = setting.ghosts();
     let (frame, degree, period) = (Frame::full(size, size), degree(setting, terms), period(setting));
     let mut renderer = Renderer::new(&lab.device()?)?;
-    let request = Request {
-        period: Some(DVec2::splat(period)),
-        degree: Some([degree; 2]),
-        evaluator: Some(Evaluator::Rows),
-        ..Request::new(frame, 0.1)
-    };
-    let plan = plan(&ghosts, &request)?;
-    let (_, seconds, pixels) = timed(|| {
-        renderer.forget_scene();
-        renderer.set_scene(&ghosts, &plan)?;
-        renderer.glare(frame, &Settings::default())
-    })?;
-    let errors = setting.errors(frame, |index| pixels[index][0].into());
-    let error = largest(&errors) / setting.bell.peak;
-    row(format!("closed form of degree {degree}, by {}", plan.evaluator), plan.terms as u32, error, seconds);
+    for evaluator in [Evaluator::Rows, Evaluator::Grid] {
+        let request = Request {
+            period: Some(DVec2::splat(period)),
+            degree: Some([degree; 2]),
+            evaluator: Some(evaluator),
+            // For the lattice: finer than the series is off by anyway.
+            ..Request::new(frame, graf.error)
+        };
+        let plan = plan(&ghosts, &request)?;
+        let (_, seconds, pixels) = timed(|| {
+            renderer.forget_scene();
+            renderer.set_scene(&ghosts, &plan)?;
+            renderer.glare(frame, &Settings::default())
+        })?;
+        let errors = setting.errors(frame, |index| pixels[index][0].into());
+        let error = largest(&errors) / setting.bell.peak;
+        row(format!("closed form of degree {degree}, by {evaluator}"), plan.terms as u32, error, seconds);
+    }
     Ok(table)
 }
