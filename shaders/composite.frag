@@ -8,9 +8,9 @@ layout(std140, binding = BINDING_PASS) uniform Pass {
     vec4 light_gain; // what a light keeps of itself, RGB; 1 unless light is taken from the photo
     vec4 luminance;  // weights of R, G, B; w: the luminance from which on a pixel is a light
     float strength;
+    float flat_span; // a range no wider than this is rounding
     float pad0;
     float pad1;
-    float pad2;
 };
 layout(location = 0) out vec4 picture;
 
@@ -20,7 +20,7 @@ vec3 normalized(vec3 value) {
 #elif NORMALIZE == 2
         vec2 ends = texelFetch(range, ivec2(0), 0).xy * vec2(1.0, -1.0); // (min, max)
         float span = ends.y - ends.x;
-        return span > 0.0 ? (value - ends.x) / span : vec3(0.0); // a flat field has no contrast to stretch
+        return span > flat_span ? (value - ends.x) / span : vec3(0.0); // a flat field has no contrast to stretch
 #else
     return value;
 #endif

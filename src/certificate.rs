@@ -1,6 +1,6 @@
 //! The error of a field that was rendered, measured against the direct sum in f64 at sample pixels.
 
-use crate::compare::compare;
+use crate::compare::compare_in;
 use crate::frame::Frame;
 use crate::plan::Plan;
 use crate::reference;
@@ -40,7 +40,8 @@ impl Certificate {
         let pixels = sample_pixels(ghosts, plan, frame);
         let points: Vec<_> = pixels.iter().map(|&[i, j]| frame.position(f64::from(i), f64::from(j))).collect();
         let rendered = renderer.probe(frame, &pixels)?;
-        let difference = compare(&reference::direct_at(ghosts, &points), &rendered);
+        // In the plan's own unit where that is larger: light that cancels, or that does not reach the picture, is nothing.
+        let difference = compare_in(&reference::direct_at(ghosts, &points), &rendered, plan.scale);
         Ok(Self {
             asked,
             predicted: plan.predicted.total(),

@@ -19,6 +19,15 @@ pub struct Difference {
 /// # Panics
 /// Where there are not as many of one as of the other.
 pub fn compare(exact: &[[f64; 3]], actual: &[[f64; 3]]) -> Difference {
+    compare_in(exact, actual, [0.0; 3])
+}
+
+/// Compares value by value, in units of the largest exact value or of `unit`, whichever is larger: where the exact values
+/// are nothing beside what they are made of, the unit says what nothing is.
+///
+/// # Panics
+/// Where there are not as many of one as of the other.
+pub fn compare_in(exact: &[[f64; 3]], actual: &[[f64; 3]], unit: [f64; 3]) -> Difference {
     assert_eq!(exact.len(), actual.len(), "as many actual values as exact ones");
     let not_finite = actual.as_flattened().iter().filter(|value| !value.is_finite()).count();
     let mut result = Difference { relative: 0.0, absolute: 0.0, worst: (0, 0), not_finite };
@@ -29,7 +38,7 @@ pub fn compare(exact: &[[f64; 3]], actual: &[[f64; 3]]) -> Difference {
         });
         let (index, error) =
             errors.enumerate().fold((0, 0.0), |worst, next| if next.1 > worst.1 { next } else { worst });
-        let largest = exact.iter().map(|value| value[colour].abs()).fold(0.0, f64::max);
+        let largest = exact.iter().map(|value| value[colour].abs()).fold(unit[colour], f64::max);
         let relative = if error == 0.0 { 0.0 } else { error / largest };
         if relative > result.relative {
             result.relative = relative;
@@ -71,5 +80,12 @@ mod tests {
         assert_eq!(compare(&[[0.0; 3]], &[[0.0; 3]]).relative, 0.0);
         assert_eq!(compare(&[[0.0; 3]], &[[0.0, 1e-30, 0.0]]).relative, f64::INFINITY);
         assert_eq!(compare(&[], &[]).relative, 0.0);
+    }
+
+    #[test]
+    fn a_unit_counts_where_the_exact_values_are_smaller() {
+        let actual = [[0.5, 0.0, 0.0]];
+        assert_eq!(compare_in(&[[0.0; 3]], &actual, [2.0; 3]).relative, 0.25);
+        assert_eq!(compare_in(&[[5.0, 0.0, 0.0]], &actual, [2.0; 3]).relative, 0.9);
     }
 }

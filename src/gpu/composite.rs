@@ -20,7 +20,9 @@ pub(crate) struct Composite {
     pub luminance: [f32; 4],
     /// What the normalised glare is multiplied by.
     pub strength: f32,
-    pub pad: [f32; 3],
+    /// A range of values that is no wider is rounding, and no contrast to stretch.
+    pub flat: f32,
+    pub pad: [f32; 2],
 }
 const _: () = assert!(size_of::<Composite>() == 64);
 

@@ -150,9 +150,10 @@ fn shaders_read_the_uniforms_of_the_composite_as_they_are_written() {
         light_gain: [5.0, 6.0, 7.0, 8.0],
         luminance: [9.0, 10.0, 11.0, 12.0],
         strength: 13.0,
-        pad: [14.0, 15.0, 16.0],
+        flat: 14.0,
+        pad: [15.0, 16.0],
     };
-    let scalars = ["strength", "pad0", "pad1", "pad2"].map(|name| format!("floatBitsToUint({name})"));
+    let scalars = ["strength", "flat_span", "pad0", "pad1"].map(|name| format!("floatBitsToUint({name})"));
     let vectors = ["scale", "light_gain", "luminance"].map(|name| components(name, 4, true));
     let view = View {
         declarations: vec![declaration("composite.frag", "layout(std140, binding = BINDING_PASS)")],

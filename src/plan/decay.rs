@@ -53,7 +53,7 @@ impl<'a> Decay<'a> {
     /// # Errors
     /// [`Error::Plan`] where a degree beyond [`HIGHEST_DEGREE`] would be needed.
     pub fn kept(&self, error: f64) -> Result<Vec<u32>> {
-        if error >= 1.0 {
+        if error >= 1.0 && self.beyond(&[1]) <= error {
             return Ok(vec![1]);
         }
         match *self {

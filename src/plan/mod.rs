@@ -3,6 +3,7 @@
 //! Pure: ghosts, a picture's size and a tolerance decide everything. The error is split by its sources, each with its
 //! bound; docs/accuracy.md says where each comes from.
 
+mod check;
 mod cost;
 mod decay;
 mod lattice;
@@ -173,8 +174,11 @@ pub fn plan(ghosts: &[Ghost], asked: &Request) -> Result<Plan> {
     if !(asked.tolerance > 0.0 && asked.tolerance < 1.0) {
         return Err(Error::Plan(format!("a tolerance of {} is not between 0 and 1", asked.tolerance)));
     }
+    check::request(asked)?;
+    check::ghosts(ghosts)?;
     let request = &Request { period: own_period(ghosts, asked)?, ..*asked };
     let survey = Survey::new(ghosts, request);
+    check::scale(survey.weighed.scale)?;
     // A period or a degree asks for a series.
     let series = asked.period.is_some() || asked.degree.is_some();
     let wanted = |evaluator| match request.evaluator {
@@ -235,8 +239,22 @@ impl Survey {
 
 /// The plan that one evaluator asks for.
 fn candidate(ghosts: &[Ghost], survey: &Survey, request: &Request, evaluator: Evaluator) -> Result<Plan> {
+    // What rounding costs depends on the degree, and the degree on what rounding leaves of the tolerance.
+    let mut degree = request.degree.map_or(rounding::SEEN_DEGREE, |[n, m]| n.max(m));
+    loop {
+        let rounding = rounding::bound(ghosts, &survey.weighed, evaluator, degree);
+        let plan = with_rounding(rounding, survey, request, evaluator)?;
+        let needed = plan.degree[0].max(plan.degree[1]);
+        if evaluator == Evaluator::Direct || needed <= degree {
+            return Ok(plan);
+        }
+        degree = needed + needed / 16;
+    }
+}
+
+/// The plan of one evaluator that rounding costs so much.
+fn with_rounding(rounding: f64, survey: &Survey, request: &Request, evaluator: Evaluator) -> Result<Plan> {
     let weighed = &survey.weighed;
-    let rounding = rounding::bound(ghosts, weighed, evaluator);
     // With the whole of the series given, there is nothing left to plan: the error is predicted as it comes.
     let given = request.period.is_some() && request.degree.is_some() && evaluator != Evaluator::Grid;
     let usable = request.tolerance - rounding;

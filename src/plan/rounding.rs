@@ -22,10 +22,16 @@ fn per_weight(evaluator: Evaluator) -> f64 {
 /// half of the pixel's, which is what a division in GLSL may be off by.
 const PER_CENTER: f64 = 3.0 * f32::EPSILON as f64;
 
-/// A bound of the rounding error, relative to the field's largest value.
-pub(super) fn bound(ghosts: &[Ghost], weighed: &Weighed, evaluator: Evaluator) -> f64 {
+/// Harmonics that [`per_weight`] was seen with. Beyond them it grows, by itself for each `PER_DEGREE`: a phase's rounding
+/// is multiplied by the harmonic, and there are more terms to add up.
+pub(super) const SEEN_DEGREE: u32 = 250;
+const PER_DEGREE: f64 = 1000.0;
+
+/// A bound of the rounding error of series up to a degree, relative to the field's largest value.
+pub(super) fn bound(ghosts: &[Ghost], weighed: &Weighed, evaluator: Evaluator, degree: u32) -> f64 {
     if evaluator != Evaluator::Direct {
-        return per_weight(evaluator) * weighed.weights.iter().sum::<f64>().max(1.0);
+        let growth = 1.0 + f64::from(degree.saturating_sub(SEEN_DEGREE)) / PER_DEGREE;
+        return per_weight(evaluator) * growth * weighed.weights.iter().sum::<f64>().max(1.0);
     }
     let kept = ghosts.iter().zip(&weighed.nearest).zip(&weighed.weights).filter(|(_, weight)| **weight > 0.0);
     let sum: f64 = kept.map(|((ghost, &nearest), weight)| weight * direct(ghost, nearest.abs())).sum();

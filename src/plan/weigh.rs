@@ -5,7 +5,6 @@ use rayon::prelude::*;
 
 use super::{Request, share};
 use crate::frame::Frame;
-use crate::reference;
 use crate::scene::Ghost;
 
 /// Evaluations of a bell that finding the scale may cost.
@@ -13,6 +12,11 @@ const EFFORT: usize = 600_000;
 /// Probes: at the pixels next to the ghosts that alone shine strongest, and on an even grid over the picture.
 const STRONGEST: usize = 48;
 const GRID: u32 = 6;
+
+/// A field below this part of what its ghosts are at their centres is nothing: f32 could not hold both.
+const UNSEEN: f64 = 1e-30;
+/// And one below this part of the light that makes it up, some of it negative, is what f64 leaves when all cancels.
+const CANCELLED: f64 = 1e-13;
 
 /// The ghosts, weighed against the field's scale.
 pub(super) struct Weighed {
@@ -35,26 +39,62 @@ pub(super) fn weigh(ghosts: &[Ghost], request: &Request) -> Weighed {
     let nearest: Vec<DVec2> = ghosts.par_iter().map(|ghost| nearest_offset(ghost, frame)).collect();
     let peaks = probes(ghosts, &nearest, frame);
     let points: Vec<DVec2> = peaks.iter().map(|&[i, j]| frame.position(f64::from(i), f64::from(j))).collect();
-    let mut scale = [0.0f64; 3];
-    for value in reference::direct_at(ghosts, &points) {
-        for (scale, value) in scale.iter_mut().zip(value) {
-            *scale = scale.max(value.abs());
-        }
-    }
-    // A colour of which nothing reaches the picture, or less than f32 can tell beside the others, is held against the
-    // others' scale: nothing is not to be computed to a thousandth of itself. Where that is so for all of them, what
-    // the ghosts are at their centres is the scale.
-    let largest = scale.iter().fold(0.0f64, |a, &b| a.max(b));
-    let peak = ghosts.iter().flat_map(|ghost| ghost.radiance).fold(0.0f64, |a, b| a.max(b.abs()));
-    let nothing = 1e-30 * largest.max(peak);
-    let instead = [largest, peak].into_iter().find(|&value| value > nothing).unwrap_or(1.0);
-    let scale = scale.map(|value| if value > nothing { value } else { instead });
-
+    let scale = scale(ghosts, &nearest, &points, request.tolerance);
     let mut weights: Vec<f64> = ghosts.par_iter().map(|ghost| peak_weight(ghost, scale)).collect();
     let reached: Vec<f64> =
         ghosts.par_iter().zip(&nearest).zip(&weights).map(|((ghost, &offset), w)| w * reached(ghost, offset)).collect();
     let (dropped, dropped_error) = drop_faint(&mut weights, &reached, share::DROPPED * request.tolerance);
     Weighed { scale, peaks, weights, nearest, dropped, dropped_error }
+}
+
+/// The unit of each colour: the largest value found.
+///
+/// A colour of which nothing reaches the picture is held against the others' scale: nothing is not to be computed to a
+/// thousandth of itself. Where that is so for all of them, what cancels is the scale, or else what the ghosts are at their
+/// centres.
+fn scale(ghosts: &[Ghost], nearest: &[DVec2], points: &[DVec2], tolerance: f64) -> [f64; 3] {
+    let (mut net, mut gross) = ([0.0f64; 3], [0.0f64; 3]);
+    for (value, magnitude) in sums_at(ghosts, points) {
+        for colour in 0..3 {
+            net[colour] = net[colour].max(value[colour].abs());
+            gross[colour] = gross[colour].max(magnitude[colour]);
+        }
+    }
+    // The brightest of the ghosts that matter to the picture: one that is out of its reach may be as bright as it likes.
+    let matters = net.map(|net| share::DROPPED * tolerance * net / ghosts.len().max(1) as f64);
+    let mut brightest = [0.0f64; 3];
+    for (ghost, &offset) in ghosts.iter().zip(nearest) {
+        let reached = reached(ghost, offset);
+        for colour in 0..3 {
+            let radiance = ghost.radiance[colour].abs();
+            if radiance * reached > matters[colour] {
+                brightest[colour] = brightest[colour].max(radiance);
+            }
+        }
+    }
+    let nothing = [0, 1, 2].map(|colour| (UNSEEN * brightest[colour]).max(CANCELLED * gross[colour]));
+    let seen = [0, 1, 2].map(|colour| if net[colour] > nothing[colour] { net[colour] } else { 0.0 });
+    let largest = |values: [f64; 3]| values.into_iter().fold(0.0, f64::max);
+    let peak = ghosts.iter().flat_map(|ghost| ghost.radiance).fold(0.0f64, |a, b| a.max(b.abs()));
+    let cancelled = [0, 1, 2].map(|colour| if gross[colour] > UNSEEN * peak { gross[colour] } else { 0.0 });
+    let instead = [largest(seen), largest(cancelled), peak].into_iter().find(|&value| value > 0.0).unwrap_or(1.0);
+    [0, 1, 2].map(|colour| if seen[colour] > 0.0 { seen[colour] } else { instead.max(nothing[colour]) })
+}
+
+/// The sum of the bells at many points, and that of their magnitudes.
+fn sums_at(ghosts: &[Ghost], points: &[DVec2]) -> Vec<([f64; 3], [f64; 3])> {
+    let at = |&point: &DVec2| {
+        let mut sums = ([0.0; 3], [0.0; 3]);
+        for ghost in ghosts {
+            let value = ghost.bell.shape().value(point - ghost.center, ghost.size);
+            for colour in 0..3 {
+                sums.0[colour] += ghost.radiance[colour] * value;
+                sums.1[colour] += (ghost.radiance[colour] * value).abs();
+            }
+        }
+        sums
+    };
+    points.par_iter().map(at).collect()
 }
 
 /// What a bell of peak 1 is at most at any pixel, the nearest of which is `offset` sizes away.

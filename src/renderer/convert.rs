@@ -1,5 +1,7 @@
 //! From scene, plan and settings to what the passes take; one way only.
 
+use glam::DVec2;
+
 use super::settings::{Normalize, Settings};
 use crate::gpu::composite::{Composite, Variant};
 use crate::gpu::field::Source;
@@ -77,7 +79,8 @@ pub(super) fn direct_ghosts(ghosts: &[Ghost], plan: &Plan) -> (Vec<DirectGhost>,
         let bell = begin | if several { group.bell.kind() << 24 } else { 0 };
         direct.extend(group.members.iter().map(|&index| {
             let ghost = &ghosts[index as usize];
-            let inverse = 1.0 / ghost.size;
+            // Finite, so that no bell is asked for 0 · ∞ at its centre.
+            let inverse = (1.0 / ghost.size).min(DVec2::splat(f64::from(f32::MAX)));
             DirectGhost {
                 center: [ghost.center.x as f32, ghost.center.y as f32],
                 inverse_size: [inverse.x as f32, inverse.y as f32],
@@ -105,10 +108,14 @@ pub(super) fn uniforms(plan: &Plan, settings: &Settings) -> Composite {
         light_gain: rgb(settings.light_gain, 1.0),
         luminance: rgb(settings.luminance, settings.threshold),
         strength: settings.strength as f32,
-        pad: [0.0; 3],
+        flat: (2.0 * plan.predicted.rounding * plan.scale.iter().fold(0.0, |a: f64, &b| a.max(b))) as f32,
+        pad: [0.0; 2],
     }
 }
 
 fn weight(ghost: &Ghost, plan: &Plan) -> [f32; 3] {
-    [0, 1, 2].map(|colour| (ghost.radiance[colour] / plan.scale[colour]) as f32)
+    // The plan drops what is brighter, because too little of it reaches the picture; but a ghost may be kept for another
+    // of its colours.
+    const BRIGHTEST: f64 = 1e36;
+    [0, 1, 2].map(|colour| (ghost.radiance[colour] / plan.scale[colour]).clamp(-BRIGHTEST, BRIGHTEST) as f32)
 }
