@@ -230,9 +230,12 @@ impl Renderer {
                 continue;
             }
             let source = self.evaluate(frame, tile)?;
-            let local: Vec<_> = mine.iter().map(|&k| [pixels[k][0] - tile.x, pixels[k][1] - tile.y]).collect();
-            for (&index, value) in mine.iter().zip(self.field.probe(&self.runner, source, &local)?) {
-                values[index] = [0, 1, 2].map(|colour| f64::from(value[colour]) * scale[colour]);
+            // The values come in a texture of one row.
+            for mine in mine.chunks(self.runner.device().info().limits.texture_size as usize) {
+                let local: Vec<_> = mine.iter().map(|&k| [pixels[k][0] - tile.x, pixels[k][1] - tile.y]).collect();
+                for (&index, value) in mine.iter().zip(self.field.probe(&self.runner, source, &local)?) {
+                    values[index] = [0, 1, 2].map(|colour| f64::from(value[colour]) * scale[colour]);
+                }
             }
             self.runner.device().check("looking up the field")?;
         }

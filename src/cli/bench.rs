@@ -2,6 +2,7 @@
 
 mod cases;
 mod first;
+mod gaussians;
 mod many;
 mod report;
 mod scenes;
@@ -43,6 +44,18 @@ pub struct Args {
     #[arg(long)]
     quick: bool,
 
+    /// Measure nothing but a field of this many Gaussians of one size, for comparison with other programs
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    gaussians: Option<u32>,
+
+    /// Their size, in widths of the picture
+    #[arg(long, value_name = "WIDTHS", default_value_t = 0.05, value_parser = part, requires = "gaussians")]
+    sigma: f64,
+
+    /// The tolerance that they are planned for
+    #[arg(long, value_name = "E", default_value_t = 1e-3, value_parser = part, requires = "gaussians")]
+    tolerance: f64,
+
     /// Write the rows of all tables to this file too
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -64,7 +77,15 @@ const EXAMPLES: &str = "\
 Examples:
   vglare bench                              What does a 1080p frame cost here?
   vglare bench --quick --backend osmesa     A quick look at Mesa's software renderer
-  vglare bench --size 3840x2160 --csv 4k.csv";
+  vglare bench --size 3840x2160 --csv 4k.csv
+  vglare bench --gaussians 1000 --json 1000.json";
+
+fn part(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(part @ 1e-6..=1.0) => Ok(part),
+        _ => Err("expected a number from 1e-6 to 1".to_owned()),
+    }
+}
 
 fn size(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once(['x', 'X']).map(|(width, height)| [width.parse(), height.parse()]);
@@ -105,6 +126,10 @@ fn measure(args: &Args) -> Result<Report> {
 
     let stage = Stage::new(device, args.size, rounds);
     let mut report = Report::new(stage.device().info(), args.size, rounds);
+    if let Some(count) = args.gaussians {
+        gaussians::of_one_size(&stage, &mut report, count as usize, args.sigma, args.tolerance)?;
+        return Ok(report);
+    }
     first::frame(&stage, opened, &mut report)?;
     cases::default_path(&stage, &mut report)?;
     many::ghosts(&stage, &mut report, args.quick)?;

@@ -53,6 +53,7 @@ impl<'a> Decay<'a> {
     /// # Errors
     /// [`Error::Plan`] where a degree beyond [`HIGHEST_DEGREE`] would be needed.
     pub fn kept(&self, error: f64) -> Result<Vec<u32>> {
+        // As much as there is of it.
         if error >= 1.0 && self.beyond(&[1]) <= error {
             return Ok(vec![1]);
         }
@@ -75,7 +76,7 @@ impl<'a> Decay<'a> {
                 let rows = (0..).zip(counts.iter().copied().chain([0]));
                 // The nearest mode that is not there: at the end of a row, or where there is no row.
                 let nearest = rows.map(|(n, m)| (turn * DVec2::new(f64::from(n), f64::from(m))).length());
-                radial.beyond(nearest.fold(f64::INFINITY, f64::min), 0.5 * turn.length())
+                copies(size) * radial.beyond(nearest.fold(f64::INFINITY, f64::min), 0.5 * turn.length())
             }
         }
     }
@@ -172,12 +173,20 @@ fn beyond_product(x: &Axis, y: &Axis, counts: &[u32]) -> f64 {
     within + x.tails[counts.len() - 1] * y.total()
 }
 
+/// How many copies of a bell that ends, of a size in periods, may have their rims at one point. Each of them leaves out
+/// what one bell does.
+fn copies(size: DVec2) -> f64 {
+    let along = |size: f64| 1.0 + 2.0 * (size + 0.5).floor();
+    along(size.x) * along(size.y)
+}
+
 /// The modes within an ellipse, found by bisection.
 fn kept_radial(radial: &dyn Radial, size: DVec2, error: f64) -> Result<Vec<u32>> {
     let turn = TAU * size;
     let cell = 0.5 * turn.length();
     let highest = turn.min_element() * f64::from(HIGHEST_DEGREE);
     let (mut low, mut high) = (0.0, highest);
+    let error = error / copies(size);
     if radial.beyond(highest, cell) > error {
         return Err(too_high(f64::INFINITY));
     }

@@ -187,7 +187,8 @@ pub fn plan(ghosts: &[Ghost], asked: &Request) -> Result<Plan> {
     };
     let mut candidates = Vec::new();
     let mut refusals = Vec::new();
-    for evaluator in Evaluator::ALL.into_iter().filter(|&evaluator| wanted(evaluator)) {
+    let wanted: Vec<Evaluator> = Evaluator::ALL.into_iter().filter(|&evaluator| wanted(evaluator)).collect();
+    for &evaluator in &wanted {
         match candidate(ghosts, &survey, request, evaluator) {
             Ok(plan) => candidates.push(plan),
             Err(error) => refusals.push(error),
@@ -198,8 +199,37 @@ pub fn plan(ghosts: &[Ghost], asked: &Request) -> Result<Plan> {
     let cheapest = candidates.into_iter().min_by(|a, b| a.costs[0].milliseconds.total_cmp(&b.costs[0].milliseconds));
     match cheapest {
         Some(plan) => Ok(Plan { costs, ..plan }),
-        None => Err(refusals.pop().unwrap_or_else(|| Error::Plan("no evaluator is left".into()))),
+        None => Err(most_helpful(ghosts, &survey, request, &wanted, refusals)),
     }
+}
+
+/// The refusal that says what can be had: the lowest tolerance at which there is a plan, where rounding is the reason.
+fn most_helpful(
+    ghosts: &[Ghost],
+    survey: &Survey,
+    request: &Request,
+    wanted: &[Evaluator],
+    mut refusals: Vec<Error>,
+) -> Error {
+    let lowest = |refusals: &[Error]| {
+        let floors = refusals.iter().filter_map(|refusal| match refusal {
+            Error::ToleranceBelowFloor { floor, .. } => Some(*floor),
+            _ => None,
+        });
+        floors.min_by(f64::total_cmp)
+    };
+    let mut next = lowest(&refusals);
+    // A series may be refused at its floor for another reason, its degree; what is left is the next floor.
+    while let Some(floor) = next.filter(|floor| *floor < 0.99) {
+        let eased = Request { tolerance: 1.0001 * floor, ..*request };
+        let tried = wanted.iter().map(|&evaluator| candidate(ghosts, survey, &eased, evaluator));
+        let (plans, others): (Vec<_>, Vec<_>) = tried.partition(Result::is_ok);
+        if !plans.is_empty() {
+            return Error::ToleranceBelowFloor { asked: request.tolerance, floor };
+        }
+        next = lowest(&others.into_iter().filter_map(Result::err).collect::<Vec<_>>());
+    }
+    refusals.pop().unwrap_or_else(|| Error::Plan("no evaluator is left".into()))
 }
 
 /// The period that was asked for, or that periodic bells bring with them.

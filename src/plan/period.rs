@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::weigh::Weighed;
 use crate::frame::Frame;
 use crate::scene::Ghost;
-use crate::series::{Bell, Shape};
+use crate::series::{Bell, Modes, Shape};
 
 /// Ghosts of about one size and one distance, as the bounds see them: the worst of each.
 pub(super) struct Reach {
@@ -116,6 +116,10 @@ pub(super) fn shortest(reaches: &[Reach], budget: f64) -> DVec2 {
         // The bound holds for periods longer than every distance.
         let farthest = reaches.iter().map(|reach| axis(reach.farthest)).fold(0.0, f64::max);
         let widest = reaches.iter().map(|reach| axis(reach.size)).fold(0.0, f64::max);
+        // The rims of round bells must not meet: what a series leaves out of one of them is bounded, not of several.
+        let round = reaches.iter().filter(|reach| matches!(reach.bell.shape().modes(), Modes::Radial(_)));
+        let apart = round.map(|reach| 2.0 * (1.0 + 1e-9) * axis(reach.size)).fold(0.0, f64::max);
+        let farthest = farthest.max(apart);
         let mut low = if farthest > 0.0 || widest > 0.0 { farthest } else { 1.0 };
         let mut high = low + widest.max(1e-6 * low);
         while error(high) > 0.45 * budget {

@@ -5,6 +5,7 @@ mod cli;
 mod composite;
 mod evaluators;
 mod experiments;
+mod extremes;
 mod fourier_bessel;
 mod golden;
 mod graf;

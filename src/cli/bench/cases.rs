@@ -109,7 +109,7 @@ pub(super) fn by_hand(ghosts: &[Ghost], frame: Frame, evaluator: Evaluator) -> R
     plan(ghosts, &request)
 }
 
-fn described(plan: &Plan) -> String {
+pub(super) fn described(plan: &Plan) -> String {
     if plan.evaluator == Evaluator::Direct {
         return format!("{} ghosts reach the picture.", plan.ghosts());
     }

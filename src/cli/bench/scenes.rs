@@ -32,3 +32,9 @@ pub(super) fn scattered(count: usize, smallest: f64, frame: Frame) -> Vec<Ghost>
     };
     (0..count).map(one).collect()
 }
+
+/// `count` Gaussians of one size, spread evenly over the picture; benches/peers/peers.py has the same.
+pub(super) fn alike(count: usize, size: f64, frame: Frame) -> Vec<Ghost> {
+    let resized = |ghost: Ghost| Ghost { center: ghost.center / 1.1, size: DVec2::splat(size), ..ghost };
+    scattered(count, size, frame).into_iter().map(resized).collect()
+}

@@ -67,6 +67,11 @@ impl Stage {
 }
 
 impl Actor {
+    /// What renders, the scene set.
+    pub fn renderer(&mut self) -> &mut Renderer {
+        &mut self.renderer
+    }
+
     /// The yardstick.
     pub fn copy(&mut self) -> Result<()> {
         self.renderer.draw_copy()?;
