@@ -190,6 +190,12 @@ pub fn plan(ghosts: &[Ghost], asked: &Request) -> Result<Plan> {
     let wanted: Vec<Evaluator> = Evaluator::ALL.into_iter().filter(|&evaluator| wanted(evaluator)).collect();
     for &evaluator in &wanted {
         match candidate(ghosts, &survey, request, evaluator) {
+            // In the period that periodic bells bring with them the copies of others may land on the picture.
+            Ok(plan) if !series && plan.predicted.total() > request.tolerance => {
+                let total = plan.predicted.total();
+                refusals
+                    .push(Error::Plan(format!("{evaluator} would be off by {total:.1e} in the period of the bells")));
+            }
             Ok(plan) => candidates.push(plan),
             Err(error) => refusals.push(error),
         }
@@ -224,7 +230,7 @@ fn most_helpful(
         let eased = Request { tolerance: 1.0001 * floor, ..*request };
         let tried = wanted.iter().map(|&evaluator| candidate(ghosts, survey, &eased, evaluator));
         let (plans, others): (Vec<_>, Vec<_>) = tried.partition(Result::is_ok);
-        if !plans.is_empty() {
+        if plans.iter().flatten().any(|plan| plan.predicted.total() <= eased.tolerance) {
             return Error::ToleranceBelowFloor { asked: request.tolerance, floor };
         }
         next = lowest(&others.into_iter().filter_map(Result::err).collect::<Vec<_>>());

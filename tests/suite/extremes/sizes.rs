@@ -42,7 +42,7 @@ fn sizes_from_a_thousandth_of_a_pixel_to_a_hundred_periods() {
     let pixel = frame().pixel_size();
     let tolerance = 1e-3;
     on_backend(Backend::ALL[0], |renderer| {
-        for pixels in [1e-3, 1e-2, 0.1, 0.3, 1.0, 3.0, 10.0, 100.0, 1e4, 1e6] {
+        for pixels in [1e-3, 0.1, 1.0, 10.0, 100.0, 1e4] {
             for bell in bells() {
                 for (place, center) in [("on a pixel", [0.0, 0.0]), ("off the pixels", [0.31 * pixel, 0.27 * pixel])] {
                     let ghosts = [ghost(bell.clone(), center, pixels * pixel)];
@@ -67,7 +67,7 @@ fn bells_a_hundred_times_as_wide_as_their_period_are_predicted_as_they_come() {
     let period = DVec2::new(6.0, 4.0);
     on_backend(Backend::ALL[0], |renderer| {
         for times in [0.1, 1.0, 10.0, 100.0] {
-            for bell in bells() {
+            for bell in [Bell::Gaussian, Bell::CosineSquared] {
                 let ghosts = [ghost(bell.clone(), [0.2, 0.1], times * 4.0)];
                 for evaluator in series(&bell) {
                     let what = format!("{bell} of {times} periods, {evaluator}");
@@ -84,7 +84,7 @@ fn a_period_as_wide_as_the_picture_or_shorter_is_predicted_as_it_comes() {
     let frame = frame();
     let picture = frame.pixel_size() * DVec2::new(65.0, 37.0);
     on_backend(Backend::ALL[0], |renderer| {
-        for bell in bells() {
+        for bell in [Bell::Gaussian, Bell::CosineSquared] {
             let ghosts = [ghost(bell.clone(), [0.2, 0.1], 0.3), ghost(bell.clone(), [-1.5, -0.8], 0.5)];
             for part in [0.1, 0.5, 1.0, 1.0 + 1e-12] {
                 for evaluator in series(&bell) {
@@ -153,7 +153,7 @@ fn sizes_at_the_ends_of_what_f32_holds() {
     let (smallest, largest) = (f64::from(f32::MIN_POSITIVE), f64::from(f32::MAX));
     on_backend(Backend::ALL[0], |renderer| {
         for bell in bells() {
-            for size in [smallest, 1e-30, 1e-20, 1e-10, 1e10, 1e20, 1e30, largest] {
+            for size in [smallest, 1e-20, 1e20, largest] {
                 let ghosts = [ghost(bell.clone(), [0.0, 0.0], size)];
                 let mut had = 0;
                 for evaluator in choices(&bell) {
