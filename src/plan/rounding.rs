@@ -25,7 +25,7 @@ const PER_CENTER: f64 = 3.0 * f32::EPSILON as f64;
 /// Harmonics that [`per_weight`] was seen with. Beyond them it grows, by itself for each `PER_DEGREE`: a phase's rounding
 /// is multiplied by the harmonic, and there are more terms to add up.
 pub(super) const SEEN_DEGREE: u32 = 100;
-const PER_DEGREE: f64 = 300.0;
+const PER_DEGREE: f64 = 200.0;
 
 /// A bound of the rounding error of series up to a degree, relative to the field's largest value.
 pub(super) fn bound(ghosts: &[Ghost], weighed: &Weighed, evaluator: Evaluator, degree: u32) -> f64 {
