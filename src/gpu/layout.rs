@@ -12,6 +12,7 @@ pub(crate) type Binding = (&'static str, u32);
 pub(crate) const PASS: Binding = ("BINDING_PASS", 0);
 /// What an evaluator has beside the pass that asks it.
 pub(crate) const EVALUATOR: Binding = ("BINDING_EVALUATOR", 1);
+pub(crate) const SAMPLES: Binding = ("BINDING_SAMPLES", 2);
 
 /// Shader storage blocks.
 pub(crate) const GHOSTS: Binding = ("BINDING_GHOSTS", 0);
@@ -35,9 +36,10 @@ pub(crate) const RANGE: Binding = ("UNIT_RANGE", 8);
 pub(crate) const WORKBENCH: Binding = ("UNIT_WORKBENCH", 9);
 
 /// Every binding, for the head of every shader.
-pub(crate) const BINDINGS: [Binding; 17] = [
+pub(crate) const BINDINGS: [Binding; 18] = [
     PASS,
     EVALUATOR,
+    SAMPLES,
     GHOSTS,
     PARTIALS,
     SPECTRUM,

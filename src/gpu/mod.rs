@@ -9,8 +9,11 @@
 //! | `spectrum` | ghosts → A, B, C, D |
 //! | `harmonics`, `evaluators` | spectrum → the function `glare(pixel)` of each evaluator |
 //! | `field`, `range`, `composite` | that function → the field, its range, the picture |
+//! | `coefficients` | samples of any function → its coefficients |
+//! | `lines` | curves as line strips |
 //! | `copy` | the yardstick of the bench |
 
+pub(crate) mod coefficients;
 pub(crate) mod composite;
 mod context;
 pub(crate) mod copy;
@@ -18,6 +21,7 @@ pub(crate) mod evaluators;
 pub(crate) mod field;
 mod harmonics;
 pub(crate) mod layout;
+pub(crate) mod lines;
 pub(crate) mod range;
 pub(crate) mod resource;
 pub(crate) mod runner;

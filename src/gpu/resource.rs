@@ -61,7 +61,6 @@ impl<T: Pod> Buffer<T> {
     }
 
     /// The first `length` elements, after waiting for the device.
-    #[cfg(test)]
     pub fn read(&self, length: usize) -> Vec<T> {
         let mut data = vec![T::zeroed(); length.min(self.length)];
         let gl = self.device.gl();
@@ -81,6 +80,16 @@ impl<T: Pod> Buffer<T> {
     /// Binds the whole buffer as a shader storage block.
     pub fn bind_storage(&self, (_, index): Binding) {
         unsafe { self.device.gl().bind_buffer_base(glow::SHADER_STORAGE_BUFFER, index, Some(self.raw)) }
+    }
+
+    /// Makes the buffer the vertex attribute `location` of the current vertex array: f32s, as many as a `T` holds.
+    pub fn bind_vertices(&self, location: u32) {
+        let (gl, floats) = (self.device.gl(), size_of::<T>() / size_of::<f32>());
+        unsafe {
+            gl.bind_buffer(glow::ARRAY_BUFFER, Some(self.raw));
+            gl.enable_vertex_attrib_array(location);
+            gl.vertex_attrib_pointer_f32(location, floats as i32, glow::FLOAT, false, 0, 0);
+        }
     }
 
     /// Binds the whole buffer as a uniform block.

@@ -83,6 +83,11 @@ impl Runner {
         Ok(())
     }
 
+    /// The program of a vertex and a fragment shader of `shaders/`.
+    pub(super) fn drawn_by(&self, vertex: &str, fragment: &str) -> Result<Rc<Program>> {
+        self.program(fragment, &[], |device, fragment, _| Program::drawing(device, vertex, fragment))
+    }
+
     /// Runs `work` as a part of the frame with a name and, while timing is on, a time.
     pub fn run<T>(&self, label: &str, work: impl FnOnce() -> T) -> T {
         let gl = self.device.gl();

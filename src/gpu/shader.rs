@@ -23,6 +23,8 @@ macro_rules! sources {
 const SOURCES: &[(&str, &str)] = &sources![
     "bells/gaussian.glsl",
     "cells.frag",
+    "coefficients.comp",
+    "coefficients_sum.comp",
     "composite.frag",
     "copy.frag",
     "evaluators/direct.glsl",
@@ -33,6 +35,8 @@ const SOURCES: &[(&str, &str)] = &sources![
     "fullscreen.vert",
     "harmonics.frag",
     "lattice.frag",
+    "lines.frag",
+    "lines.vert",
     "probe.frag",
     "profiles.frag",
     "range.frag",
@@ -59,6 +63,11 @@ impl Program {
     pub fn fragment(device: &Rc<Device>, fragment: &str, defines: &[Define<'_>]) -> Result<Self> {
         let stages = [(glow::VERTEX_SHADER, "fullscreen.vert"), (glow::FRAGMENT_SHADER, fragment)];
         Self::link(device, &stages, defines)
+    }
+
+    /// A program that runs `fragment` for what `vertex` makes of its vertices.
+    pub fn drawing(device: &Rc<Device>, vertex: &str, fragment: &str) -> Result<Self> {
+        Self::link(device, &[(glow::VERTEX_SHADER, vertex), (glow::FRAGMENT_SHADER, fragment)], &[])
     }
 
     /// A program of one compute shader.

@@ -9,6 +9,8 @@
 
 mod book;
 pub mod chart;
+mod fourier_1d;
+mod fourier_1d_gpu;
 mod lab;
 mod page;
 mod parabola_1d;
@@ -57,6 +59,8 @@ macro_rules! experiments {
 // In the order in which `all` runs and shows them.
 experiments! {
     "parabola-1d" => Parabola1d(parabola_1d),
+    "fourier-1d" => Fourier1d(fourier_1d),
+    "fourier-1d-gpu" => Fourier1dGpu(fourier_1d_gpu),
 }
 
 impl Experiment {

@@ -12,7 +12,7 @@ use plotters::style::{Color as _, FontStyle, FontTransform, IntoFont as _, RGBCo
 
 use super::axis::{Scale, Tick};
 use super::line::{Point, clipped, dashes};
-use super::{Along, Axis, COLOURS, Chart, Colour, Series, Stroke};
+use super::{Along, Axis, COLOURS, Chart, Colour, Mark, Series, Stroke};
 use crate::{Error, Result};
 
 /// Drawn pixels along a side of a pixel of the picture.
@@ -179,8 +179,8 @@ impl<B: DrawingBackend> Painter<'_, B> {
         for (index, series) in self.chart.series.iter().enumerate() {
             self.series(series, colour(series, index))?;
         }
-        let [left, top, right, bottom] = self.layout.plot;
-        self.frame([left, top, right, bottom])?;
+        self.mark_labels()?;
+        self.frame(self.layout.plot)?;
         self.numbers()?;
         self.bar()?;
         self.titles()?;
@@ -284,26 +284,47 @@ impl<B: DrawingBackend> Painter<'_, B> {
         Ok(())
     }
 
+    /// The two ends of a mark's line; none where it has no place.
+    fn mark(&self, mark: &Mark) -> Option<[Point; 2]> {
+        let [left, top, right, bottom] = self.layout.plot.map(f64::from);
+        match mark.along {
+            Along::Vertical => {
+                self.layout.x.place(mark.at).map(|place| self.layout.x(place)).map(|x| [[x, top], [x, bottom]])
+            }
+            Along::Horizontal => {
+                self.layout.y.place(mark.at).map(|place| self.layout.y(place)).map(|y| [[left, y], [right, y]])
+            }
+        }
+    }
+
     fn marks(&self) -> Result<()> {
-        let [left, top, right, bottom] = self.layout.plot;
-        for mark in &self.chart.marks {
-            let (line, at, turned) = match mark.along {
-                Along::Vertical => {
-                    let Some(x) = self.layout.x.place(mark.at).map(|place| self.layout.x(place)) else { continue };
-                    let at = [x as i32 + 11 * FINE, top + 8 * FINE];
-                    ([[x, f64::from(top)], [x, f64::from(bottom)]], at, true)
-                }
-                Along::Horizontal => {
-                    let Some(y) = self.layout.y.place(mark.at).map(|place| self.layout.y(place)) else { continue };
-                    let at = [right - 8 * FINE, y as i32 - 5 * FINE];
-                    ([[f64::from(left), y], [f64::from(right), y]], at, false)
-                }
-            };
+        for line in self.chart.marks.iter().filter_map(|mark| self.mark(mark)) {
             for dash in dashes(&line, 7.0 * f64::from(FINE), 4.0 * f64::from(FINE)) {
                 self.line(&dash, [110; 3], 1.2)?;
             }
-            let vertical = if turned { VPos::Center } else { VPos::Bottom };
-            self.text(&mark.label, FONT, at, (HPos::Right, vertical), turned)?;
+        }
+        Ok(())
+    }
+
+    /// The marks' labels, on white, over the curves.
+    fn mark_labels(&self) -> Result<()> {
+        for (mark, [start, end]) in self.chart.marks.iter().filter_map(|mark| Some((mark, self.mark(mark)?))) {
+            if mark.label.is_empty() {
+                continue;
+            }
+            let (long, thick) = (text_width(&mark.label, FONT) + 8 * FINE, 20 * FINE);
+            // Right of a line that goes up, at its top; above one that goes across, at its right end.
+            let (corner, size, turned) = match mark.along {
+                Along::Vertical => ([start[0] as i32 + 2 * FINE, start[1] as i32 + 3 * FINE], [thick, long], true),
+                Along::Horizontal => {
+                    ([end[0] as i32 - 3 * FINE - long, end[1] as i32 - 2 * FINE - thick], [long, thick], false)
+                }
+            };
+            let opposite = (corner[0] + size[0], corner[1] + size[1]);
+            let white = plotters::style::WHITE.filled();
+            self.area.draw(&Rectangle::new([(corner[0], corner[1]), opposite], white)).map_err(failed)?;
+            let center = [corner[0] + size[0] / 2, corner[1] + size[1] / 2];
+            self.text(&mark.label, FONT, center, (HPos::Center, VPos::Center), turned)?;
         }
         Ok(())
     }
