@@ -12,6 +12,7 @@ pub mod chart;
 mod fourier_1d;
 mod fourier_1d_gpu;
 mod lab;
+mod lookup;
 mod page;
 mod parabola_1d;
 mod report;
@@ -61,6 +62,7 @@ experiments! {
     "parabola-1d" => Parabola1d(parabola_1d),
     "fourier-1d" => Fourier1d(fourier_1d),
     "fourier-1d-gpu" => Fourier1dGpu(fourier_1d_gpu),
+    "lookup" => Lookup(lookup),
 }
 
 impl Experiment {
@@ -76,8 +78,9 @@ impl Experiment {
         let one = |command: &Command| {
             let knows = command.get_arguments().any(|argument| argument.get_long() == Some("as-printed"));
             let flag = (as_printed && knows).then_some("--as-printed");
-            let matches = commands.clone().get_matches_from([command.get_name()].into_iter().chain(flag));
-            Self::from_arg_matches(&matches).expect("every parameter has a default")
+            let arguments = [command.get_name()].into_iter().chain(flag);
+            let matches = commands.clone().try_get_matches_from(arguments);
+            matches.and_then(|matches| Self::from_arg_matches(&matches)).expect("every parameter has a default")
         };
         commands.get_subcommands().map(one).collect()
     }

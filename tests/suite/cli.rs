@@ -3,6 +3,7 @@
 mod bad_input;
 mod outputs;
 mod refusals;
+mod rex;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -195,8 +195,8 @@ impl<B: DrawingBackend> Painter<'_, B> {
     }
 
     fn frame(&self, [left, top, right, bottom]: [i32; 4]) -> Result<()> {
-        let style = ShapeStyle::from(rgb(INK)).stroke_width(FINE as u32);
-        self.area.draw(&Rectangle::new([(left, top), (right, bottom)], style)).map_err(failed)
+        let corners = [[left, top], [right, top], [right, bottom], [left, bottom], [left, top]];
+        self.line(&corners.map(|corner| corner.map(f64::from)), INK, 1.0)
     }
 
     fn text(&self, text: &str, size: f64, at: [i32; 2], anchor: (HPos, VPos), turned: bool) -> Result<()> {
