@@ -23,9 +23,6 @@ pub(crate) const PHASES: Binding = ("BINDING_PHASES", 4);
 pub(crate) const PROBES: Binding = ("BINDING_PROBES", 5);
 pub(crate) const TABLE: Binding = ("BINDING_TABLE", 6);
 pub(crate) const SHAPES: Binding = ("BINDING_SHAPES", 7);
-/// Of passes that no evaluator is bound for meanwhile: eight numbers are all that GL 4.3 promises.
-pub(crate) const COEFFICIENTS: Binding = ("BINDING_COEFFICIENTS", 6);
-pub(crate) const SUMS: Binding = ("BINDING_SUMS", 7);
 
 /// Texture units.
 pub(crate) const PHOTO: Binding = ("UNIT_PHOTO", 0);
@@ -48,7 +45,7 @@ pub(crate) const RADIAL: Binding = ("UNIT_RADIAL", 12);
 pub(crate) const FOLDED: Binding = ("UNIT_FOLDED", 13);
 
 /// Every binding, for the head of every shader.
-pub(crate) const BINDINGS: [Binding; 26] = [
+pub(crate) const BINDINGS: [Binding; 24] = [
     PASS,
     EVALUATOR,
     SAMPLES,
@@ -60,8 +57,6 @@ pub(crate) const BINDINGS: [Binding; 26] = [
     PROBES,
     TABLE,
     SHAPES,
-    COEFFICIENTS,
-    SUMS,
     PHOTO,
     FIELD,
     HARMONICS_X,

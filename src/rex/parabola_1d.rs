@@ -147,7 +147,8 @@ impl Parabola {
         coefficients[0] + (1..=degree).rev().map(term).sum::<f64>()
     }
 
-    /// The bound on the error of degree N: A² times (2T/(π²hN)) (1 + T/(4πhN)) (docs/math.md, section 4.1).
+    /// The bound on the error of degree N: A² times (2T/(π²hN)) (1 + T/(4πhN)) (docs/math.md,
+    /// "The parabola of the notes").
     fn bound(&self, degree: u32) -> f64 {
         let ratio = self.period / (self.half * f64::from(degree));
         self.peak() * 2.0 * ratio / (PI * PI) * (1.0 + ratio / (4.0 * PI))

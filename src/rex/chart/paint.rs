@@ -1,5 +1,7 @@
 //! Charts drawn with `plotters`: four times as large as they become, because its lines lie on whole pixels.
 
+mod marks;
+
 use std::sync::OnceLock;
 
 use image::RgbImage;
@@ -12,7 +14,7 @@ use plotters::style::{Color as _, FontStyle, FontTransform, IntoFont as _, RGBCo
 
 use super::axis::{Scale, Tick};
 use super::line::{Point, clipped, dashes};
-use super::{Along, Axis, COLOURS, Chart, Colour, Mark, Series, Stroke};
+use super::{Along, Axis, COLOURS, Chart, Colour, Series, Stroke};
 use crate::{Error, Result};
 
 /// Drawn pixels along a side of a pixel of the picture.
@@ -195,8 +197,8 @@ impl<B: DrawingBackend> Painter<'_, B> {
     }
 
     fn frame(&self, [left, top, right, bottom]: [i32; 4]) -> Result<()> {
-        let style = ShapeStyle::from(rgb(INK)).stroke_width(FINE as u32);
-        self.area.draw(&Rectangle::new([(left, top), (right, bottom)], style)).map_err(failed)
+        let corners = [[left, top], [right, top], [right, bottom], [left, bottom], [left, top]];
+        self.line(&corners.map(|corner| corner.map(f64::from)), INK, 1.0)
     }
 
     fn text(&self, text: &str, size: f64, at: [i32; 2], anchor: (HPos, VPos), turned: bool) -> Result<()> {
@@ -280,51 +282,6 @@ impl<B: DrawingBackend> Painter<'_, B> {
                 let at = [x + (SWATCH + 9) * FINE, y + FINE * 6];
                 self.text(&series.label, FONT, at, (HPos::Left, VPos::Center), false)?;
             }
-        }
-        Ok(())
-    }
-
-    /// The two ends of a mark's line; none where it has no place.
-    fn mark(&self, mark: &Mark) -> Option<[Point; 2]> {
-        let [left, top, right, bottom] = self.layout.plot.map(f64::from);
-        match mark.along {
-            Along::Vertical => {
-                self.layout.x.place(mark.at).map(|place| self.layout.x(place)).map(|x| [[x, top], [x, bottom]])
-            }
-            Along::Horizontal => {
-                self.layout.y.place(mark.at).map(|place| self.layout.y(place)).map(|y| [[left, y], [right, y]])
-            }
-        }
-    }
-
-    fn marks(&self) -> Result<()> {
-        for line in self.chart.marks.iter().filter_map(|mark| self.mark(mark)) {
-            for dash in dashes(&line, 7.0 * f64::from(FINE), 4.0 * f64::from(FINE)) {
-                self.line(&dash, [110; 3], 1.2)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// The marks' labels, on white, over the curves.
-    fn mark_labels(&self) -> Result<()> {
-        for (mark, [start, end]) in self.chart.marks.iter().filter_map(|mark| Some((mark, self.mark(mark)?))) {
-            if mark.label.is_empty() {
-                continue;
-            }
-            let (long, thick) = (text_width(&mark.label, FONT) + 8 * FINE, 20 * FINE);
-            // Right of a line that goes up, at its top; above one that goes across, at its right end.
-            let (corner, size, turned) = match mark.along {
-                Along::Vertical => ([start[0] as i32 + 2 * FINE, start[1] as i32 + 3 * FINE], [thick, long], true),
-                Along::Horizontal => {
-                    ([end[0] as i32 - 3 * FINE - long, end[1] as i32 - 2 * FINE - thick], [long, thick], false)
-                }
-            };
-            let opposite = (corner[0] + size[0], corner[1] + size[1]);
-            let white = plotters::style::WHITE.filled();
-            self.area.draw(&Rectangle::new([(corner[0], corner[1]), opposite], white)).map_err(failed)?;
-            let center = [corner[0] + size[0] / 2, corner[1] + size[1] / 2];
-            self.text(&mark.label, FONT, center, (HPos::Center, VPos::Center), turned)?;
         }
         Ok(())
     }
