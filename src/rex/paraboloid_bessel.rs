@@ -85,7 +85,7 @@ impl Setting {
         let bell = Paraboloid { peak: args.a, curvature: args.b };
         let spot = |x: f64| Spot { center: DVec2::new(x, args.y), weight: WEIGHT };
         let spots = [spot(args.x[0]), spot(args.x[1])];
-        // Beyond 2L − ρ from a ghost, the series shows a ring that is not there (docs/math.md, section 9).
+        // Beyond 2L − ρ from a ghost, the series shows a ring that is not there (docs/math.md, "Fourier-Bessel and Graf").
         let farthest = (spots.iter()).map(|spot| (spot.center.abs() + 1.0).length()).fold(0.0, f64::max);
         if bell.edge() > args.radius || farthest > 2.0 * args.radius - bell.edge() {
             return Err(Error::Usage(format!(
