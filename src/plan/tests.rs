@@ -98,33 +98,3 @@ fn the_direct_sum_knows_how_far_f32_shifts_a_small_bell() {
     let (middle, aside) = (request(&[ghost([0.0, 0.0], [1e-4; 2])]), request(&[ghost(pixel, [1e-4; 2])]));
     assert!(middle < 1e-6 && aside > 1e-3, "{middle:e} {aside:e}");
 }
-
-#[test]
-#[ignore = "timing"]
-fn timing() {
-    for count in [1000usize, 100_000] {
-        let part = |k: usize, irrational: f64| (0.5 + k as f64 * irrational).fract();
-        let ghosts: Vec<Ghost> = (0..count)
-            .map(|k| {
-                ghost(
-                    [3.6 * part(k, 0.754_877_666) - 1.8, 2.0 * part(k, 0.569_840_291) - 1.0],
-                    [0.1 + 0.2 * part(k, 0.618_033_989); 2],
-                )
-            })
-            .collect();
-        for _ in 0..3 {
-            let request = Request::new(Frame::full(1920, 1080), 1e-2);
-            let t = std::time::Instant::now();
-            let s = Survey::new(&ghosts, &request);
-            let a = t.elapsed();
-            let plan = plan(&ghosts, &request);
-            println!(
-                "{count}: survey {a:?} ({} reaches, {} groups) plan {:?} {:?}",
-                s.reaches.len(),
-                s.groups.len(),
-                t.elapsed() - a,
-                plan.map(|p| p.evaluator)
-            );
-        }
-    }
-}
