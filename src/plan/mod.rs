@@ -8,6 +8,7 @@ mod decay;
 mod lattice;
 mod period;
 mod rounding;
+mod slots;
 mod terms;
 mod weigh;
 
