@@ -1,9 +1,9 @@
 //! Ghosts sorted into a few slots, in chunks on all cores.
 
-use std::collections::HashMap;
 use std::hash::Hash;
 
 use rayon::prelude::*;
+use rustc_hash::FxHashMap;
 
 use crate::scene::Ghost;
 use crate::series::Bell;
@@ -15,12 +15,12 @@ const CHUNK: usize = 4096;
 /// Numbers for pairs of bell and key, in the order in which they first come.
 pub(super) struct Slots<'a, K> {
     bells: Vec<&'a Bell>,
-    places: HashMap<(usize, K), usize>,
+    places: FxHashMap<(usize, K), usize>,
 }
 
 impl<'a, K: Hash + Eq> Slots<'a, K> {
     pub fn new() -> Self {
-        Self { bells: Vec::new(), places: HashMap::new() }
+        Self { bells: Vec::new(), places: FxHashMap::default() }
     }
 
     /// The pair's number, one more than the last where it is new.
