@@ -31,6 +31,18 @@ impl Progress {
         Self { bar }
     }
 
+    /// From now on shows how much of `total` is done.
+    pub fn measured(&self, total: usize) {
+        let template = "{spinner} {msg} {wide_bar} {percent} % {elapsed}";
+        self.bar.set_style(ProgressStyle::with_template(template).expect("the template is sound"));
+        self.bar.set_length(total as u64);
+    }
+
+    /// So much more is done.
+    pub fn advance(&self, by: usize) {
+        self.bar.inc(by as u64);
+    }
+
     /// Says what goes on now.
     pub fn step(&self, what: impl Into<Cow<'static, str>>) {
         self.bar.set_message(what);

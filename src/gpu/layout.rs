@@ -27,6 +27,10 @@ pub(crate) const SHAPES: Binding = ("BINDING_SHAPES", 7);
 pub(crate) const COEFFICIENTS: Binding = ("BINDING_COEFFICIENTS", 6);
 pub(crate) const SUMS: Binding = ("BINDING_SUMS", 7);
 
+/// Of the measurement of precision, which no other pass is bound for meanwhile.
+pub(crate) const ARGUMENTS: Binding = ("BINDING_ARGUMENTS", 0);
+pub(crate) const VALUES: Binding = ("BINDING_VALUES", 1);
+
 /// Texture units.
 pub(crate) const PHOTO: Binding = ("UNIT_PHOTO", 0);
 pub(crate) const FIELD: Binding = ("UNIT_FIELD", 1);
@@ -48,7 +52,7 @@ pub(crate) const RADIAL: Binding = ("UNIT_RADIAL", 12);
 pub(crate) const FOLDED: Binding = ("UNIT_FOLDED", 13);
 
 /// Every binding, for the head of every shader.
-pub(crate) const BINDINGS: [Binding; 26] = [
+pub(crate) const BINDINGS: [Binding; 28] = [
     PASS,
     EVALUATOR,
     SAMPLES,
@@ -62,6 +66,8 @@ pub(crate) const BINDINGS: [Binding; 26] = [
     SHAPES,
     COEFFICIENTS,
     SUMS,
+    ARGUMENTS,
+    VALUES,
     PHOTO,
     FIELD,
     HARMONICS_X,
