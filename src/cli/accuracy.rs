@@ -89,7 +89,8 @@ impl AccuracyArgs {
         let raised = self.budget.is_none() && plan.tolerance > self.tolerance;
         let note = raised.then(|| {
             let (asked, floor) = (self.tolerance, plan.tolerance);
-            format!("the tolerance is {floor:.1e} instead of {asked:.1e}: as exact as 32-bit floats can be here")
+            let by = plan.evaluator;
+            format!("the tolerance is {floor:.1e} instead of {asked:.1e}: what 32-bit floats can give here, by {by}")
         });
         let calibration::Known { model, file, warning } = known;
         Ok(Planned {

@@ -111,6 +111,18 @@ pub fn path() -> Result<PathBuf> {
     Ok(strategy.cache_dir().join("vglare").join(FILE))
 }
 
+/// Makes the folder, so that what was measured can be kept; asked before the long work starts.
+///
+/// # Errors
+/// [`Error::Write`] where the folder cannot be made or the file cannot be one, and that of [`path`].
+pub fn ready() -> Result<()> {
+    let path = path()?;
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder).map_err(|reason| Error::write(&path, reason))?;
+    }
+    target::check(&path, true)
+}
+
 /// What the file has; nothing where it is not there.
 fn read(path: &Path) -> std::result::Result<Kept, String> {
     let text = match std::fs::read_to_string(path) {
@@ -139,9 +151,6 @@ pub fn keep(device: &Info, model: CostModel) -> Result<Option<String>> {
     let key = Key::of(device);
     kept.calibrations.retain(|entry| entry.key != key && entry.key.vglare == key.vglare);
     kept.calibrations.push(Entry { key, nanoseconds: model });
-    if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder).map_err(|reason| Error::write(&path, reason))?;
-    }
     target::write_json(&path, &kept, true)?;
     Ok(warning)
 }

@@ -25,7 +25,7 @@ pub struct Precision {
     pub sin: f64,
     /// Of the driver's cos x, absolute.
     pub cos: f64,
-    /// Of the driver's exp(−x), relative to the value, or to the smallest normal f32 where that is larger.
+    /// Of the driver's exp(−x), relative; absolute where the value is below the smallest normal f32.
     pub exp: f64,
     /// Of vglare's cosine and sine of n φ, absolute, with n up to the argument and any φ.
     pub cis: f64,
@@ -81,7 +81,7 @@ fn worst(up_to: f64, arguments: &[Argument], values: &[[f32; 4]]) -> Precision {
         worst.not_finite += [sin, cos, exp, re, im].iter().filter(|value| !value.is_finite()).count();
         worse(&mut worst.sin, sin, x.sin(), 1.0);
         worse(&mut worst.cos, cos, x.cos(), 1.0);
-        worse(&mut worst.exp, exp, decay, decay.max(f64::from(f32::MIN_POSITIVE)));
+        worse(&mut worst.exp, exp, decay, if decay < f64::from(f32::MIN_POSITIVE) { 1.0 } else { decay });
         worse(&mut worst.cis, re, turned.cos(), 1.0);
         worse(&mut worst.cis, im, turned.sin(), 1.0);
     }

@@ -151,7 +151,7 @@ impl Run<'_> {
         let (args, frame) = (self.args, photo.frame);
         progress.step("planning");
         let planned = self.stage("plan", |_| args.accuracy.plan(scene, frame, Some(device.info())))?;
-        self.warnings.extend(planned.notes.iter().chain(&planned.warnings).cloned());
+        self.warnings.extend(planned.warnings.iter().cloned());
         let plan = &planned.plan;
 
         progress.step("computing the glare");

@@ -25,6 +25,7 @@ pub fn print(run: &Run<'_>, photo: &Photo, bad: &BadPixels, scene: &Gathered) ->
         about_scene(out, scene)?;
         if let Some(planned) = &run.planned {
             about_plan(out, run, &planned.plan)?;
+            planned.notes.iter().try_for_each(|note| writeln!(out, "note     {note}"))?;
         }
         if run.args.verbose {
             about_times(out, run)?;
@@ -73,7 +74,7 @@ fn about_scene(out: &mut dyn Write, scene: &Gathered) -> io::Result<()> {
 fn about_plan(out: &mut dyn Write, run: &Run<'_>, plan: &Plan) -> io::Result<()> {
     text::plan(out, plan)?;
     if let Some(budget) = run.args.accuracy.budget {
-        write!(out, "budget   {budget:.1} ms bought a tolerance of {:.1e}", plan.tolerance)?;
+        write!(out, "budget   {budget} ms bought a tolerance of {:.1e}", plan.tolerance)?;
         let (predicted, measured) = (plan.cost().unwrap_or(f64::NAN), run.measured_ms.unwrap_or(f64::NAN));
         writeln!(out, ": {predicted:.1} ms predicted, {measured:.1} ms measured")?;
     }

@@ -15,7 +15,7 @@ use crate::renderer::{Renderer, Settings};
 use crate::scene::Ghost;
 
 /// Milliseconds that a timing should take at least: so much that the clock and the waiting do not count.
-const LONG_ENOUGH: f64 = 12.0;
+const LONG_ENOUGH: f64 = 8.0;
 /// Most repetitions in one timing.
 const REPEATS: usize = 400;
 
@@ -77,7 +77,7 @@ pub(super) mod place {
 
 /// The narrow picture, the wide one and the tiny one, in pixels: a graphics card needs more to do.
 fn pictures(software: bool) -> [Frame; 3] {
-    let [narrow, wide] = if software { [[480, 270], [1920, 270]] } else { [[1920, 1080], [7680, 1080]] };
+    let [narrow, wide] = if software { [[384, 216], [1536, 216]] } else { [[1920, 1080], [7680, 1080]] };
     [Frame::full(narrow[0], narrow[1]), Frame::full(wide[0], wide[1]), Frame::full(16, 16)]
 }
 
@@ -102,10 +102,10 @@ impl Arms {
         let all: Result<Vec<Arm>> = [
             arm(Work::Copy, 0, 1, &direct),
             arm(Work::Copy, 1, 1, &direct),
-            arm(Work::Frame, 0, 20, &direct),
-            arm(Work::Frame, 0, 100, &direct),
-            arm(Work::Frame, 0, 4, &series(3)),
-            arm(Work::Frame, 0, 4, &series(9)),
+            arm(Work::Frame, 0, 10, &direct),
+            arm(Work::Frame, 0, 60, &direct),
+            arm(Work::Frame, 0, 4, &series(2)),
+            arm(Work::Frame, 0, 4, &series(7)),
             arm(Work::Frame, 0, 4, &rows([10, 10])),
             arm(Work::Frame, 0, 4, &rows([10, 800])),
             arm(Work::Frame, 0, 4, &rows([60, 10])),

@@ -71,6 +71,9 @@ pub fn run(args: &Args) -> Result<()> {
         let done = if calibration::forget()? { "forgot what was in" } else { "there was nothing in" };
         return stdout::print(|out| writeln!(out, "{done} {}", path.display()));
     }
+    if !args.dry_run {
+        calibration::ready()?;
+    }
     let progress = Progress::start(false);
     progress.step("measuring");
     let device = Device::open(args.backend.backends())?;

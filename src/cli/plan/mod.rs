@@ -72,7 +72,7 @@ pub fn run(args: &Args) -> Result<()> {
     let device = Device::open(args.accuracy.backend.backends()).ok();
     let info = device.as_ref().map(|device| device.info());
     let planned = args.accuracy.plan(&scene, frame, info)?;
-    for warning in planned.notes.iter().chain(&planned.warnings) {
+    for warning in &planned.warnings {
         eprintln!("vglare: warning: {warning}");
     }
     let told = Told { photo: &args.photo, frame, scene: &scene, planned: &planned, info, budget: args.accuracy.budget };
@@ -104,8 +104,9 @@ impl Told<'_> {
         text::plan(out, plan)?;
         if let Some(budget) = self.budget {
             let predicted = plan.cost().unwrap_or(f64::NAN);
-            writeln!(out, "budget   {budget:.1} ms buys a tolerance of {:.1e}: {predicted:.1} ms", plan.tolerance)?;
+            writeln!(out, "budget   {budget} ms buys a tolerance of {:.1e}: {predicted:.1} ms", plan.tolerance)?;
         }
+        self.planned.notes.iter().try_for_each(|note| writeln!(out, "note     {note}"))?;
         text::details(out, self.planned)?;
         writeln!(out, "device   {}", self.device())
     }
