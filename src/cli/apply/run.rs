@@ -159,18 +159,17 @@ impl Run<'_> {
         let timing = args.verbose || args.output_options.report.is_some() || args.accuracy.budget.is_some();
         renderer.set_timing(timing);
         self.stage("spectrum", |_| renderer.set_scene(&scene.ghosts, plan))?;
-        let mut picture = renderer.take_times();
+        self.passes = renderer.take_times();
+        let spectrum = milliseconds(&self.passes);
         let glare = match &args.output_options.glare {
             Some(_) => Some(self.stage("glare", |_| renderer.glare(frame, settings))?),
             None => None,
         };
-        self.passes = renderer.take_times();
+        self.passes.extend(renderer.take_times());
         self.stage("composite", |_| renderer.composite(frame, &mut photo.pixels, settings))?;
-        picture.extend(renderer.take_times());
-        // What a budget is for; moving the picture to the device and back is not in it.
-        let counts = |time: &&PassTime| time.pass != "upload" && time.pass != "readback";
-        self.measured_ms = timing.then(|| picture.iter().filter(counts).map(|time| time.wall_ms).sum());
-        self.passes.append(&mut picture);
+        let composite = renderer.take_times();
+        self.measured_ms = timing.then(|| spectrum + milliseconds(&composite));
+        self.passes.extend(composite);
         renderer.set_timing(false);
 
         self.certify(progress, &mut renderer, &scene.ghosts, &planned, frame)?;
@@ -214,4 +213,10 @@ impl Run<'_> {
             photo::write(&args.output, photo, &run.picture_options())
         })
     }
+}
+
+/// What a budget is for; moving the picture to the device and back is not in it.
+fn milliseconds(passes: &[PassTime]) -> f64 {
+    let counts = |time: &&PassTime| time.pass != "upload" && time.pass != "readback";
+    passes.iter().filter(counts).map(|time| time.wall_ms).sum()
 }
