@@ -239,6 +239,25 @@ impl Renderer {
         Ok(values)
     }
 
+    /// The field, neither normalised nor multiplied by any strength, at every pixel of the frame's window: `visit` gets
+    /// tile after tile, each with its values row by row from the top.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the driver refuses, or where there is no scene.
+    pub fn field(&mut self, frame: Frame, mut visit: impl FnMut(Window, &[[f64; 3]])) -> Result<()> {
+        let scale = self.plan()?.scale;
+        for tile in self.tiles(frame.window) {
+            let source = self.evaluate(frame, tile)?;
+            let mut pixels = vec![[0.0f32; 4]; tile.pixels()];
+            let field = self.field.draw(&self.runner, source, tile.width, tile.height)?;
+            field.read(&mut pixels, tile.width as usize, tile.width, tile.height);
+            self.runner.device().check("reading the field")?;
+            let value = |pixel: &[f32; 4]| [0, 1, 2].map(|colour| f64::from(pixel[colour]) * scale[colour]);
+            visit(tile, &pixels.iter().map(value).collect::<Vec<_>>());
+        }
+        Ok(())
+    }
+
     /// Whether each pass is timed from now on; that makes the passes wait for each other.
     pub fn set_timing(&mut self, timing: bool) {
         self.runner.set_timing(timing);

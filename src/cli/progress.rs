@@ -7,6 +7,14 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 const PATIENCE: Duration = Duration::from_secs(1);
 
+/// Something that takes as long as it takes, and something that can be counted.
+const STEP: &str = "{spinner} {msg} {elapsed}";
+const MEASURED: &str = "{spinner} {msg} {wide_bar} {percent} % {elapsed}";
+
+fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).expect("the template is sound")
+}
+
 /// The line; gone when dropped.
 pub struct Progress {
     bar: ProgressBar,
@@ -16,7 +24,7 @@ impl Progress {
     /// Starts it, hidden at first; `quiet` keeps it hidden.
     pub fn start(quiet: bool) -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
-        bar.set_style(ProgressStyle::with_template("{spinner} {msg} {elapsed}").expect("the template is sound"));
+        bar.set_style(style(STEP));
         if !quiet {
             let shown = bar.downgrade();
             std::thread::spawn(move || {
@@ -31,8 +39,20 @@ impl Progress {
         Self { bar }
     }
 
+    /// From now on shows how much of `total` is done.
+    pub fn measured(&self, total: usize) {
+        self.bar.set_style(style(MEASURED));
+        self.bar.set_length(total as u64);
+    }
+
+    /// So much more is done.
+    pub fn advance(&self, by: usize) {
+        self.bar.inc(by as u64);
+    }
+
     /// Says what goes on now.
     pub fn step(&self, what: impl Into<Cow<'static, str>>) {
+        self.bar.set_style(style(STEP));
         self.bar.set_message(what);
     }
 }

@@ -24,6 +24,10 @@ pub(crate) const PROBES: Binding = ("BINDING_PROBES", 5);
 pub(crate) const TABLE: Binding = ("BINDING_TABLE", 6);
 pub(crate) const SHAPES: Binding = ("BINDING_SHAPES", 7);
 
+/// Of the measurement of precision, which no other pass is bound for meanwhile.
+pub(crate) const ARGUMENTS: Binding = ("BINDING_ARGUMENTS", 0);
+pub(crate) const VALUES: Binding = ("BINDING_VALUES", 1);
+
 /// Texture units.
 pub(crate) const PHOTO: Binding = ("UNIT_PHOTO", 0);
 pub(crate) const FIELD: Binding = ("UNIT_FIELD", 1);
@@ -45,7 +49,7 @@ pub(crate) const RADIAL: Binding = ("UNIT_RADIAL", 12);
 pub(crate) const FOLDED: Binding = ("UNIT_FOLDED", 13);
 
 /// Every binding, for the head of every shader.
-pub(crate) const BINDINGS: [Binding; 24] = [
+pub(crate) const BINDINGS: [Binding; 26] = [
     PASS,
     EVALUATOR,
     SAMPLES,
@@ -57,6 +61,8 @@ pub(crate) const BINDINGS: [Binding; 24] = [
     PROBES,
     TABLE,
     SHAPES,
+    ARGUMENTS,
+    VALUES,
     PHOTO,
     FIELD,
     HARMONICS_X,

@@ -8,6 +8,7 @@ mod decay;
 mod lattice;
 mod period;
 mod rounding;
+mod search;
 mod slots;
 mod terms;
 mod weigh;
@@ -18,8 +19,9 @@ use crate::frame::Frame;
 use crate::scene::Ghost;
 use crate::{Error, Result};
 
-pub use cost::Cost;
+pub use cost::{Cost, CostModel, GRID_PASSES};
 pub use lattice::{Lattice, MOST_NODES};
+pub use search::{LOOSEST, plan_at_least, plan_within};
 pub use terms::Group;
 
 use period::Reach;
@@ -75,6 +77,8 @@ pub struct Request {
     pub most_terms: usize,
     /// Rounds that the renderer runs a shader's loops for one pixel.
     pub loop_rounds: usize,
+    /// What each kind of work costs.
+    pub cost_model: CostModel,
 }
 
 impl Request {
@@ -88,6 +92,7 @@ impl Request {
             evaluator: None,
             most_terms: 2 << 20,
             loop_rounds: usize::MAX,
+            cost_model: CostModel::default(),
         }
     }
 }
@@ -95,6 +100,8 @@ impl Request {
 /// What was decided.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Plan {
+    /// The tolerance that it was made for.
+    pub tolerance: f64,
     /// How the field is computed.
     pub evaluator: Evaluator,
     /// The period in x and y.
@@ -120,8 +127,10 @@ pub struct Plan {
     pub dropped: usize,
     /// The error that the plan expects at most.
     pub predicted: Prediction,
-    /// The cost that the plan expects, and that of the evaluators it decided against.
+    /// The cost that the plan expects, and that of the evaluators it decided against, the cheapest first.
     pub costs: Vec<Cost>,
+    /// The evaluators that could not be had, and why.
+    pub refused: Vec<Refusal>,
 }
 
 impl Plan {
@@ -129,6 +138,20 @@ impl Plan {
     pub fn ghosts(&self) -> usize {
         self.groups.iter().map(|group| group.members.len()).sum()
     }
+
+    /// What it is expected to cost, in milliseconds.
+    pub fn cost(&self) -> Option<f64> {
+        self.costs.first().map(|cost| cost.milliseconds)
+    }
+}
+
+/// An evaluator that a plan could not choose.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Refusal {
+    /// The evaluator.
+    pub evaluator: Evaluator,
+    /// Why, in words.
+    pub reason: String,
 }
 
 /// Upper bounds of the error, by source; relative to the field's largest value, like the tolerance.
@@ -187,16 +210,30 @@ pub fn plan(ghosts: &[Ghost], asked: &Request) -> Result<Plan> {
     for evaluator in Evaluator::ALL.into_iter().filter(|&evaluator| wanted(evaluator)) {
         match candidate(ghosts, &survey, request, evaluator) {
             Ok(plan) => candidates.push(plan),
-            Err(error) => refusals.push(error),
+            Err(error) => refusals.push((evaluator, error)),
         }
     }
     let mut costs: Vec<Cost> = candidates.iter().flat_map(|plan: &Plan| plan.costs.clone()).collect();
     costs.sort_by(|a, b| a.milliseconds.total_cmp(&b.milliseconds));
     let cheapest = candidates.into_iter().min_by(|a, b| a.costs[0].milliseconds.total_cmp(&b.costs[0].milliseconds));
     match cheapest {
-        Some(plan) => Ok(Plan { costs, ..plan }),
-        None => Err(refusals.pop().unwrap_or_else(|| Error::Plan("no evaluator is left".into()))),
+        Some(plan) => {
+            let told = |(evaluator, error): (Evaluator, Error)| Refusal { evaluator, reason: error.to_string() };
+            Ok(Plan { costs, refused: refusals.into_iter().map(told).collect(), ..plan })
+        }
+        None => Err(nearest(refusals)),
     }
+}
+
+/// Of what refused every evaluator, what is easiest to mend: the lowest floor, where that is what refused any.
+fn nearest(refusals: Vec<(Evaluator, Error)>) -> Error {
+    let floor = |error: &Error| match error {
+        Error::ToleranceBelowFloor { floor, .. } => *floor,
+        _ => f64::INFINITY,
+    };
+    // The last of those that are alike: of what has no floor, the one nearest to `grid`.
+    let least = refusals.into_iter().rev().min_by(|(_, a), (_, b)| floor(a).total_cmp(&floor(b)));
+    least.map_or_else(|| Error::Plan("no evaluator is left".into()), |(_, error)| error)
 }
 
 /// The period that was asked for, or that periodic bells bring with them.
@@ -245,6 +282,7 @@ fn candidate(ghosts: &[Ghost], survey: &Survey, request: &Request, evaluator: Ev
         return Err(Error::ToleranceBelowFloor { asked: request.tolerance, floor: rounding / 0.75 });
     }
     let mut plan = Plan {
+        tolerance: request.tolerance,
         evaluator,
         period: DVec2::ONE,
         degree: [0; 2],
@@ -257,6 +295,7 @@ fn candidate(ghosts: &[Ghost], survey: &Survey, request: &Request, evaluator: Ev
         dropped: weighed.dropped,
         predicted: Prediction { dropped: weighed.dropped_error, rounding, ..Prediction::default() },
         costs: Vec::new(),
+        refused: Vec::new(),
     };
     if evaluator != Evaluator::Direct {
         plan_series(&mut plan, &survey.reaches, request, usable)?;
