@@ -18,16 +18,19 @@
 //! | [`mod@reference`] | the definition of the field in f64, by direct sum and by direct series |
 //! | [`compare`], [`certificate`] | the one error metric, and a rendered field held against the definition |
 //! | [`measure`] | arms timed in turns, and their ratios |
+//! | [`chart`] | numbers → charts and pictures in false colours |
 //! | [`rex`] | the research prototype's experiments, as figures and numbers |
 //! | [`cli`] | the commands |
 
 pub mod certificate;
+pub mod chart;
 pub mod cli;
 pub mod compare;
 pub mod error;
 pub mod frame;
 pub mod gpu;
 pub mod measure;
+mod page;
 pub mod photo;
 pub mod plan;
 pub mod reference;

@@ -10,7 +10,6 @@
 mod benchmark;
 mod book;
 mod chance;
-pub mod chart;
 mod cosine_2d;
 mod fourier_1d;
 mod fourier_1d_gpu;
@@ -24,6 +23,7 @@ mod paraboloid_bessel;
 mod plane;
 mod report;
 
+pub use crate::chart;
 pub use book::Book;
 pub use lab::Lab;
 pub use report::{Field, Figure, Numbers, Report, Table};
