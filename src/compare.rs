@@ -6,6 +6,8 @@ pub struct Difference {
     /// max |actual − exact| / max |exact|, the worst colour. 0 where both are nothing; infinite where something stands
     /// against an exact nothing, or where a value is not finite.
     pub relative: f64,
+    /// The root of the mean of (actual − exact)², over max |exact|, the worst colour.
+    pub rms: f64,
     /// max |actual − exact| over all colours.
     pub absolute: f64,
     /// Where the worst colour's largest error is: which value, and which colour.
@@ -21,12 +23,13 @@ pub struct Difference {
 pub fn compare(exact: &[[f64; 3]], actual: &[[f64; 3]]) -> Difference {
     assert_eq!(exact.len(), actual.len(), "as many actual values as exact ones");
     let not_finite = actual.as_flattened().iter().filter(|value| !value.is_finite()).count();
-    let mut result = Difference { relative: 0.0, absolute: 0.0, worst: (0, 0), not_finite };
+    let mut result = Difference { relative: 0.0, rms: 0.0, absolute: 0.0, worst: (0, 0), not_finite };
     for colour in 0..3 {
         // NaN is told first: folding with max would lose it.
         let errors = exact.iter().zip(actual).map(|(exact, actual)| {
             if actual[colour].is_finite() { (actual[colour] - exact[colour]).abs() } else { f64::INFINITY }
         });
+        let squares: f64 = errors.clone().map(|error| error * error).sum();
         let (index, error) =
             errors.enumerate().fold((0, 0.0), |worst, next| if next.1 > worst.1 { next } else { worst });
         let largest = exact.iter().map(|value| value[colour].abs()).fold(0.0, f64::max);
@@ -34,6 +37,9 @@ pub fn compare(exact: &[[f64; 3]], actual: &[[f64; 3]]) -> Difference {
         if relative > result.relative {
             result.relative = relative;
             result.worst = (index, colour);
+        }
+        if error > 0.0 {
+            result.rms = result.rms.max((squares / exact.len() as f64).sqrt() / largest);
         }
         result.absolute = result.absolute.max(error);
     }
@@ -52,6 +58,7 @@ mod tests {
         assert!((difference.relative - 0.02).abs() < 1e-12, "{difference:?}");
         assert!((difference.absolute - 0.1).abs() < 1e-12, "{difference:?}");
         assert_eq!(difference.worst, (1, 1));
+        assert!((difference.rms - 0.02 / 2f64.sqrt()).abs() < 1e-12, "{difference:?}");
     }
 
     #[test]

@@ -20,9 +20,11 @@
 //! | [`measure`] | arms timed in turns, and their ratios |
 //! | [`chart`] | numbers → charts and pictures in false colours |
 //! | [`rex`] | the research prototype's experiments, as figures and numbers |
+//! | [`tradeoff`] | a photo and its ghosts → accuracy against time, measured here |
 //! | [`cli`] | the commands |
 
 pub mod certificate;
+mod chance;
 pub mod chart;
 pub mod cli;
 pub mod compare;
@@ -39,5 +41,6 @@ pub mod rex;
 pub mod scene;
 pub mod series;
 mod target;
+pub mod tradeoff;
 
 pub use error::{Error, Result};

@@ -11,6 +11,7 @@ mod progress;
 mod rex;
 mod shell;
 mod stdout;
+mod tradeoff;
 
 use clap::{Parser, Subcommand};
 
@@ -44,6 +45,7 @@ enum Command {
     Presets(presets::Args),
     Harmonics(Box<harmonics::Args>),
     Bench(bench::Args),
+    Tradeoff(Box<tradeoff::Args>),
     Rex(rex::Args),
     Info(info::Args),
     Completions(shell::CompletionsArgs),
@@ -61,6 +63,7 @@ pub fn run(cli: Cli) -> Result<()> {
         Command::Presets(args) => presets::run(&args),
         Command::Harmonics(args) => harmonics::run(&args),
         Command::Bench(args) => bench::run(&args),
+        Command::Tradeoff(args) => tradeoff::run(&args),
         Command::Rex(args) => rex::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Completions(args) => shell::completions(&args),

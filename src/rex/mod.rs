@@ -9,7 +9,6 @@
 
 mod benchmark;
 mod book;
-mod chance;
 mod cosine_2d;
 mod fourier_1d;
 mod fourier_1d_gpu;
@@ -23,6 +22,7 @@ mod paraboloid_bessel;
 mod plane;
 mod report;
 
+use crate::chance;
 pub use crate::chart;
 pub use book::Book;
 pub use lab::Lab;

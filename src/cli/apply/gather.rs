@@ -2,7 +2,8 @@
 
 use glam::DVec2;
 
-use super::{Args, Mix};
+use super::{Args, Mix, SceneArgs};
+use crate::cli::lights::FindArgs;
 use crate::photo::Photo;
 use crate::renderer::{Normalize, Settings};
 use crate::scene::presets::{self, DEFAULT_PRESET};
@@ -37,10 +38,10 @@ impl Files {
     /// # Errors
     /// [`Error::SceneFile`] for a file that is not right, [`Error::UnknownPreset`], [`Error::Usage`] where two of them
     /// say the same thing.
-    pub fn read(args: &Args) -> Result<Self> {
-        let named = args.scene.preset.is_some() || args.scene.lens.is_some();
-        let scene = args.scene.scene.as_deref().map(scene::read_scene).transpose()?;
-        let lights = args.scene.lights.as_deref().map(scene::read_lights).transpose()?;
+    pub fn read(args: &SceneArgs) -> Result<Self> {
+        let named = args.preset.is_some() || args.lens.is_some();
+        let scene = args.scene.as_deref().map(scene::read_scene).transpose()?;
+        let lights = args.lights.as_deref().map(scene::read_lights).transpose()?;
         if let Some(scene) = &scene {
             if named && !scene.lens_ghosts.is_empty() {
                 return Err(Error::Usage(
@@ -51,7 +52,7 @@ impl Files {
                 return Err(Error::Usage("the scene file has lights of its own; --lights does not go with it".into()));
             }
         }
-        let lens = match (&scene, &args.scene.lens, &args.scene.preset) {
+        let lens = match (&scene, &args.lens, &args.preset) {
             (Some(scene), _, _) if !scene.lens_ghosts.is_empty() => Lens {
                 name: "scene file".into(),
                 description: scene.description.clone(),
@@ -64,13 +65,13 @@ impl Files {
     }
 
     /// The scene of a photo. The photo is searched for lights where neither file lists any, unless the scene file lists
-    /// ghosts only.
-    pub fn gather(self, photo: &Photo, args: &Args) -> Gathered {
+    /// ghosts only; or where `always` says so.
+    pub fn gather(self, photo: &Photo, args: &FindArgs, always: bool) -> Gathered {
         let scene = self.scene.unwrap_or_default();
         let listed = self.lights.or_else(|| (!scene.lights.is_empty()).then_some(scene.lights));
         let ghosts_only = !scene.ghosts.is_empty() && scene.lens_ghosts.is_empty();
         let search = listed.is_none() && !ghosts_only;
-        let found = (search || args.look.mix == Mix::Energy).then(|| find(photo, args));
+        let found = (search || always).then(|| find(photo, args));
         let lights = match (listed, &found) {
             (Some(listed), _) => listed,
             (None, Some(found)) if search => found.lights.clone(),
@@ -83,8 +84,8 @@ impl Files {
     }
 }
 
-fn find(photo: &Photo, args: &Args) -> Found {
-    scene::find(&photo.pixels, &photo.frame, photo.luminance_weights(), &(&args.find).into())
+fn find(photo: &Photo, args: &FindArgs) -> Found {
+    scene::find(&photo.pixels, &photo.frame, photo.luminance_weights(), &args.into())
 }
 
 /// What the composite is told, and what to warn of.

@@ -17,6 +17,7 @@ use crate::photo::{Depth, ToneMap};
 use crate::plan::Evaluator;
 use crate::renderer::Normalize;
 
+pub use gather::Files;
 pub use run::run;
 
 /// Lay glare over a photo
@@ -71,7 +72,7 @@ Examples:
 /// What glares.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Scene")]
-struct SceneArgs {
+pub struct SceneArgs {
     /// A scene file: lights, ghosts and lens ghosts by hand, each optional (docs/scenes.md)
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,

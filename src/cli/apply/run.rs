@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::gather::{self, Files, Gathered};
 use super::report::Report;
-use super::{Args, summary};
+use super::{Args, Mix, summary};
 use crate::certificate::Certificate;
 use crate::cli::progress::Progress;
 use crate::gpu::{Device, PassTime};
@@ -42,14 +42,14 @@ pub fn run(args: &Args) -> Result<()> {
         stages: Vec::new(),
         warnings: Vec::new(),
     };
-    let files = Files::read(args)?;
+    let files = Files::read(&args.scene)?;
     progress.step("reading the photo");
     let mut photo = run.read()?;
     run.check_targets(&photo)?;
 
     progress.step("finding the lights");
     let bad = run.stage("survey", |_| photo::survey(&photo));
-    let scene = run.stage("lights", |_| files.gather(&photo, args));
+    let scene = run.stage("lights", |_| files.gather(&photo, &args.find, args.look.mix == Mix::Energy));
     let (settings, warning) = gather::settings(args, &photo, &scene)?;
     run.warnings.extend(warning);
 
