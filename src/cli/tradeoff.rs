@@ -72,10 +72,10 @@ pub fn run(args: &Args) -> Result<()> {
     let photo = photo::read(&args.photo)?;
     progress.step("finding the lights");
     let scene = files.gather(&photo, &args.find, false);
+    let name = name(&args.photo);
+    let subject = Subject::new(&name, &photo, &scene.ghosts)?;
     tradeoff::check(&args.output, args.force)?;
     let device = Device::open(args.backend.backends())?;
-    let name = name(&args.photo);
-    let subject = Subject { name: &name, photo: &photo, ghosts: &scene.ghosts };
     let results = tradeoff::measure(&subject, &device, args.quick, &mut |what, done| progress.part(what, done))?;
     progress.step("writing");
     let index = tradeoff::write(&args.output, &results)?;

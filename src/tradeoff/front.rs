@@ -31,6 +31,7 @@ pub struct Recommendation {
     pub height: u32,
     pub ms: f64,
     pub measured: f64,
+    /// At the sample's pixels and, where pictures of it were drawn, at all of theirs.
     pub delta_e_max: f64,
     pub psnr_db: f64,
     /// Whether its largest ΔE2000 is below [`VISIBLE`].
@@ -43,7 +44,9 @@ pub(super) fn front(points: &[Point]) -> Vec<usize> {
         .filter(|(_, point)| point.sweep == Sweep::Tolerance)
         .filter_map(|(index, point)| Some((index, point.ms?, point.measured?)))
         .collect();
-    swept.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.2.total_cmp(&b.2)));
+    // Of tolerances that one plan does for, the finest says what it is.
+    let asked = |index: usize| points[index].asked.unwrap_or(1.0);
+    swept.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.2.total_cmp(&b.2)).then(asked(a.0).total_cmp(&asked(b.0))));
     let mut least = f64::INFINITY;
     swept.retain(|&(_, _, error)| {
         let better = error < least;
@@ -78,6 +81,20 @@ pub(super) fn crossovers(points: &[Point]) -> Vec<Crossover> {
     [Evaluator::Series, Evaluator::Rows, Evaluator::Grid].map(against).to_vec()
 }
 
+/// The fastest of the points that were measured for the same request as this one.
+pub(super) fn fastest<'a>(points: &'a [Point], of: &Point) -> Option<&'a Point> {
+    let request = |point: &Point| (point.sweep, point.asked, point.width, point.height, point.ghosts);
+    let same = points.iter().filter(|point| request(point) == request(of) && point.ms.is_some());
+    same.min_by(|a, b| a.ms.unwrap_or(f64::INFINITY).total_cmp(&b.ms.unwrap_or(f64::INFINITY)))
+}
+
+/// How many times as long as the fastest the planner's choices of a sweep take, at worst.
+pub(super) fn regret(points: &[Point], sweep: Sweep) -> Option<f64> {
+    let own = points.iter().filter(|point| point.sweep == sweep && point.planner);
+    let ratios = own.filter_map(|point| Some(point.ms? / fastest(points, point)?.ms?));
+    ratios.reduce(f64::max)
+}
+
 /// Among the planner's own choices: the most exact one of those that take no longer than the fastest invisible one; where
 /// none is invisible, the one that differs least.
 pub(super) fn choice(points: &[Point]) -> Option<&Point> {
@@ -96,8 +113,7 @@ pub(super) fn choice(points: &[Point]) -> Option<&Point> {
 /// The choice in figures: time and error at the largest picture that was timed with it.
 pub(super) fn recommend(points: &[Point]) -> Option<Recommendation> {
     let chosen = choice(points)?;
-    let largest =
-        points.iter().filter(|point| point.sweep == Sweep::Size && point.planner && point.ms.is_some()).last();
+    let largest = points.iter().rfind(|point| point.sweep == Sweep::Size && point.planner && point.ms.is_some());
     let timed = largest.unwrap_or(chosen);
     Some(Recommendation {
         tolerance: chosen.asked?,
@@ -113,12 +129,18 @@ pub(super) fn recommend(points: &[Point]) -> Option<Recommendation> {
 }
 
 impl Recommendation {
+    /// The same, where a larger difference was seen elsewhere.
+    pub(super) fn seen(self, delta_e: f64) -> Self {
+        let delta_e_max = self.delta_e_max.max(delta_e);
+        Self { delta_e_max, invisible: delta_e_max < VISIBLE, ..self }
+    }
+
     /// In a sentence.
     pub fn sentence(&self) -> String {
         let seen = if self.invisible { "invisible" } else { "visible where it is worst" };
         format!(
-            "Use --tolerance {}: glare for {} × {} pixels costs {} ms by {}, and is off by at most {:.1e} of its largest \
-             value, which is {seen} (ΔE2000 up to {}).",
+            "Use --tolerance {}: glare for {} × {} pixels costs {} ms by {}; the largest error measured is {:.1e} of the \
+             largest glare, which is {seen} (ΔE2000 up to {}).",
             exponent(self.tolerance),
             self.width,
             self.height,
@@ -192,9 +214,19 @@ mod tests {
         let found = recommend(&points).unwrap();
         assert_eq!((found.ms, found.measured, found.invisible), (50.0, 3e-4, true));
         assert!(found.sentence().contains("--tolerance 1e-3") && found.sentence().contains("50.0 ms"));
+        assert!(found.clone().seen(0.9).invisible && !found.seen(1.1).invisible);
         let visible = recommend(&points[..1]).unwrap();
         assert!(!visible.invisible && visible.sentence().contains("visible where"));
         assert!(recommend(&[]).is_none());
+    }
+
+    #[test]
+    fn the_planner_is_held_against_the_fastest_of_the_same_request() {
+        let other = |asked, ms| Point { planner: false, ..point(Sweep::Tolerance, asked, ms, 1e-3, 0.0) };
+        let points = [point(Sweep::Tolerance, 1e-2, 3.0, 1e-3, 0.0), other(1e-2, 2.0), other(1e-3, 1.0)];
+        assert_eq!(fastest(&points, &points[0]).unwrap().ms, Some(2.0));
+        assert_eq!(regret(&points, Sweep::Tolerance), Some(1.5));
+        assert_eq!(regret(&points, Sweep::Size), None);
     }
 
     #[test]

@@ -5,8 +5,8 @@ use image::{Rgb, RgbImage};
 use rayon::prelude::*;
 
 use super::Watch;
-use super::front::VISIBLE;
-use super::point::{Point, Sweep};
+use super::front::choice;
+use super::point::Point;
 use super::sample::{Pictured, composite, pictured};
 use super::study::{Study, at_most};
 use crate::Result;
@@ -19,7 +19,7 @@ use crate::renderer::Settings;
 use palette::color_difference::Ciede2000 as _;
 
 /// Pixels of a map, and bells that the direct sum may evaluate for it.
-const MAP_PIXELS: f64 = 1.3e5;
+const MAP_PIXELS: f64 = 3e5;
 const EFFORT: f64 = 1.5e8;
 /// A crop's sides in pixels, and how much it is enlarged.
 const CROP: [u32; 2] = [132, 88];
@@ -44,8 +44,21 @@ pub(super) struct Look {
     /// False colours of the error.
     pub map: RgbImage,
     pub crop: RgbImage,
-    /// The largest ΔE2000 within the crop.
+    /// The largest ΔE2000 within the crop, and in the whole picture.
     pub delta_e: f64,
+    pub delta_e_whole: f64,
+}
+
+impl Looks {
+    /// The largest ΔE2000 that was seen in pictures of a point; none where none was drawn.
+    pub fn delta_e(&self, point: &Point) -> Option<f64> {
+        let same = |look: &&Look| look.point.asked == point.asked && look.point.evaluator == point.evaluator;
+        self.shown.iter().find(same).map(|look| look.delta_e_whole)
+    }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().copied().fold(0.0, f64::max)
 }
 
 /// A photo with its exact glare, as it is shown.
@@ -114,35 +127,28 @@ pub(super) fn looks(study: &mut Study<'_>, points: &[Point], front: &[usize], wa
     };
     for (done, &point) in picked.iter().enumerate() {
         let whole = field(study, point, small.photo.frame)?;
-        let near = field(study, point, crop.photo.frame)?;
-        let seen = crop.with(&near);
+        // The tolerance counts relative to the whole picture's largest value: a plan for the crop alone would be finer.
+        let near = field(study, point, study.photo.frame)?;
+        let seen = crop.with(&cut(&near, study.photo.width(), window));
         looks.shown.push(Look {
             point: point.clone(),
             map: map(&small, &whole)?,
             crop: enlarged(crop.picture(&seen)),
-            delta_e: crop.delta_e(&seen).into_iter().fold(0.0, f64::max),
+            delta_e: largest(&crop.delta_e(&seen)),
+            delta_e_whole: largest(&small.delta_e(&small.with(&whole))).max(largest(&crop.delta_e(&seen))),
         });
         watch(0.3 + 0.7 * (done + 1) as f64 / picked.len() as f64);
     }
     Ok(looks)
 }
 
-/// The fastest point of the front, the first whose picture does not differ visibly, the middle and the most exact one.
+/// The fastest point of the front, the middle and the most exact one, and the one that is recommended.
 fn picked<'a>(points: &'a [Point], front: &[usize]) -> Vec<&'a Point> {
-    let front: Vec<&Point> = front.iter().map(|&index| &points[index]).collect();
     let Some(last) = front.len().checked_sub(1) else { return Vec::new() };
-    let unseen = front.iter().position(|point| point.delta_e_max.is_some_and(|delta_e| delta_e < VISIBLE));
-    let mut indices = vec![0, unseen.unwrap_or(last), last.div_ceil(2), last];
-    // The coarsest of all swept, however slow, shows best what errors look like.
-    indices.sort_unstable();
-    indices.dedup();
-    let mut picked: Vec<&Point> = indices.into_iter().map(|index| front[index]).collect();
-    let swept = points.iter().filter(|point| point.sweep == Sweep::Tolerance && point.measured.is_some());
-    if let Some(worst) = swept.max_by(|a, b| a.measured.unwrap_or(0.0).total_cmp(&b.measured.unwrap_or(0.0)))
-        && worst.measured > picked[0].measured
-    {
-        picked.insert(0, worst);
-    }
+    let mut picked: Vec<&Point> = [0, last.div_ceil(2), last].iter().map(|&k| &points[front[k]]).collect();
+    picked.extend(choice(points));
+    picked.sort_by(|a, b| b.measured.unwrap_or(0.0).total_cmp(&a.measured.unwrap_or(0.0)));
+    picked.dedup_by(|a, b| a.asked == b.asked && a.evaluator == b.evaluator);
     picked
 }
 
@@ -190,12 +196,17 @@ fn crop_window(frame: Frame, small: Frame, delta_e: &[f64]) -> Window {
 }
 
 fn cropped(photo: &Photo, window: Window) -> Photo {
-    let row = |y: u32| {
-        let from = (window.y as u32 + y) as usize * photo.width() as usize + window.x as usize;
-        &photo.pixels[from..from + window.width as usize]
-    };
-    let pixels = (0..window.height).flat_map(row).copied().collect();
+    let pixels = cut(&photo.pixels, photo.width(), window);
     Photo { frame: photo.frame.with_window(window), pixels, source: photo.source.clone() }
+}
+
+/// A window of a whole picture that is `width` pixels wide.
+fn cut<T: Copy>(pixels: &[T], width: u32, window: Window) -> Vec<T> {
+    let row = |y: u32| {
+        let from = (window.y as u32 + y) as usize * width as usize + window.x as usize;
+        &pixels[from..from + window.width as usize]
+    };
+    (0..window.height).flat_map(row).copied().collect()
 }
 
 /// The whole picture with a line around the window.

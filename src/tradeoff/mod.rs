@@ -20,10 +20,10 @@ use std::rc::Rc;
 
 use serde::Serialize;
 
-use crate::Result;
 use crate::gpu::{Device, Info};
 use crate::photo::Photo;
 use crate::scene::Ghost;
+use crate::{Error, Result};
 
 pub use front::{Crossover, Recommendation, exponent, short};
 pub use phases::PhaseCurve;
@@ -35,10 +35,24 @@ use study::Study;
 
 /// What is measured: a photo and what glares in it.
 pub struct Subject<'a> {
-    /// The photo's name, for people.
-    pub name: &'a str,
-    pub photo: &'a Photo,
-    pub ghosts: &'a [Ghost],
+    name: &'a str,
+    photo: &'a Photo,
+    ghosts: &'a [Ghost],
+}
+
+impl<'a> Subject<'a> {
+    /// A photo, by a name for people, and what glares in it.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where nothing glares.
+    pub fn new(name: &'a str, photo: &'a Photo, ghosts: &'a [Ghost]) -> Result<Self> {
+        if ghosts.is_empty() {
+            return Err(Error::Usage(format!(
+                "nothing glares in {name}: --lights or --scene can say what does, --threshold find fainter lights"
+            )));
+        }
+        Ok(Self { name, photo, ghosts })
+    }
 }
 
 /// Hears how much of a sweep is done, from 0 to 1.
@@ -86,7 +100,7 @@ const STAGES: [(&str, f64); 7] = [
 /// Runs all sweeps; `watch` hears what is going on, and how much of all is done, from 0 to 1.
 ///
 /// # Errors
-/// [`crate::Error::Usage`] where nothing glares; [`crate::Error::Gl`] where the driver refuses.
+/// [`Error::Gl`] where the driver refuses, [`Error::Chart`] where an error map cannot be drawn.
 pub fn measure(
     subject: &Subject<'_>,
     device: &Rc<Device>,
@@ -114,6 +128,7 @@ pub fn measure(
     let front = front::front(&points);
     let mut looks = Looks::default();
     stage(&mut |watch| looks::looks(&mut study, &points, &front, watch).map(|found| looks = found))?;
+    let seen = front::choice(&points).and_then(|point| looks.delta_e(point));
     let tight = study.tightest(|request| request);
     let period = tight.as_ref().filter(|(_, plan)| plan.terms > 0).map_or_else(|| wide(&study), |(_, p)| p.period.x);
     Ok(Results {
@@ -126,7 +141,7 @@ pub fn measure(
         rounds: study.bench.rounds.timed(),
         sample: study.sample.pixels.len(),
         device: device.info().clone(),
-        recommendation: front::recommend(&points),
+        recommendation: front::recommend(&points).map(|found| found.seen(seen.unwrap_or(0.0))),
         crossovers: front::crossovers(&points),
         phase_reach: tight
             .map(|(_, plan)| f64::from(plan.degree[0]) * 0.5 * wide(&study) / period)

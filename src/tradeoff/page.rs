@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::Results;
 use super::captions::glossary;
-use super::front::{exponent, short};
+use super::front::{exponent, fastest, short};
 use super::looks::Look;
 use super::plots::Plot;
 use super::point::{Point, Sweep};
@@ -17,7 +17,10 @@ pub(super) const GENERATOR: &str = r#"<meta name="generator" content="vglare tra
 const STYLE: &str = "<style>
 .headline { background: var(--card); border: 1px solid var(--line); border-radius: 8px; padding: 1rem 1.2rem;
   font-size: 1.15rem; max-width: none }
-.tiles { display: grid; grid-template-columns: repeat(auto-fill, minmax(19rem, 1fr)); gap: 1.2rem }
+.tiles { display: grid; grid-template-columns: repeat(auto-fill, minmax(27rem, 1fr)); gap: 1.2rem }
+.crops { grid-template-columns: repeat(auto-fill, minmax(19rem, 1fr)) }
+@media (max-width: 30rem) { .tiles, .crops { grid-template-columns: 1fr } }
+th.number { text-align: right } table { font-size: .9rem }
 .tiles figure { margin: 0 } .tiles img { width: 100% } .crops img { image-rendering: pixelated }
 </style>
 ";
@@ -34,6 +37,7 @@ pub(super) fn page(results: &Results, plots: &[Plot], files: &Files) -> String {
     text.push_str(&glossary());
     text.push_str("<h2>What it looks like</h2>\n");
     text.push_str(&pictures(results, files));
+    text.push_str("<h2>What was measured</h2>\n");
     for (plot, files) in plots.iter().zip(&files.plots) {
         text.push_str(&figure(plot, files));
     }
@@ -81,14 +85,16 @@ fn headline(results: &Results) -> String {
 
 fn choices(results: &Results) -> String {
     let mut text = String::from(
-        "<div class=\"wide\"><table>\n<tr><th>tolerance</th><th>evaluator</th><th>degree</th><th>predicted</th>\
-         <th>measured</th><th>RMS</th><th>PSNR, dB</th><th>ΔE2000</th><th>ms</th><th>least to most</th></tr>\n",
+        "<div class=\"wide\"><table>\n<tr><th class=\"number\">tolerance</th><th>evaluator</th><th>degree</th>\
+         <th class=\"number\">predicted</th><th class=\"number\">measured</th><th class=\"number\">RMS</th>\
+         <th class=\"number\">PSNR, dB</th><th class=\"number\">ΔE2000</th><th class=\"number\">ms</th>\
+         <th>least to most</th><th>fastest here</th></tr>\n",
     );
     for point in results.choices() {
         let asked = point.asked.map(exponent).unwrap_or_default();
         if let Some(reason) = &point.refused {
             let _ =
-                writeln!(text, "<tr>{}<td colspan=\"9\" class=\"soft\">{}</td></tr>", cell(&asked), escaped(reason));
+                writeln!(text, "<tr>{}<td colspan=\"10\" class=\"soft\">{}</td></tr>", cell(&asked), escaped(reason));
             continue;
         }
         let error = |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.1e}"));
@@ -104,10 +110,21 @@ fn choices(results: &Results) -> String {
             number(point.delta_e_max),
             number(point.ms),
             format!("{} to {}", number(point.least_ms), number(point.most_ms)),
+            other_fastest(results, point),
         ];
         let _ = writeln!(text, "<tr>{}</tr>", cells.iter().map(|value| cell(value)).collect::<String>());
     }
     text + "</table></div>\n"
+}
+
+/// What would have been faster than a planner's choice; a dash where nothing was.
+fn other_fastest(results: &Results, point: &Point) -> String {
+    match fastest(&results.points, point) {
+        Some(Point { evaluator: Some(evaluator), ms: Some(ms), .. }) if Some(*evaluator) != point.evaluator => {
+            format!("{evaluator}, {} ms", short(*ms))
+        }
+        _ => "–".to_owned(),
+    }
 }
 
 fn pictures(results: &Results, files: &Files) -> String {
@@ -163,7 +180,7 @@ fn picture(file: &str, caption: &str) -> String {
 fn figure(Plot { stem, caption, chart }: &Plot, [png, svg, csv]: &[String; 3]) -> String {
     let (title, caption, [width, height]) = (escaped(&chart.title), escaped(caption), chart.size);
     format!(
-        "<h2>{title}</h2>\n<figure id=\"{stem}\"><img src=\"{png}\" width=\"{width}\" height=\"{height}\" alt=\"{title}\" \
+        "<figure id=\"{stem}\"><img src=\"{png}\" width=\"{width}\" height=\"{height}\" alt=\"{title}\" \
          loading=\"lazy\">\n<figcaption>{caption} <a href=\"{svg}\">SVG</a> · <a href=\"{png}\">PNG</a> · \
          <a href=\"{csv}\">CSV</a></figcaption></figure>\n"
     )

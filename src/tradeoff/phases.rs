@@ -13,14 +13,15 @@ use crate::series::phase;
 const HIGHEST: u32 = 4096;
 /// Positions along the picture's width.
 const POSITIONS: u32 = 275;
-/// Bins for each doubling of n·x.
+/// Bins for each doubling of n.
 const BINS: f64 = 2.0;
 
 /// One way, and its errors.
 #[derive(Debug, Clone, Serialize)]
 pub struct PhaseCurve {
     pub way: &'static str,
-    /// |n x / T| in turns, and the largest error of the cosine among the pairs of n and x that have about that many.
+    /// n·x/T in turns where x is the picture's border, and the largest error at any position in the picture of the
+    /// harmonics up to that n, down to the next point's.
     pub points: Vec<[f64; 2]>,
 }
 
@@ -73,20 +74,18 @@ pub(super) fn curves(frame: Frame, period: f64) -> Vec<PhaseCurve> {
 }
 
 fn errors(compute: Way, positions: &[f64], period: f64) -> Vec<[f64; 2]> {
-    let mut bins: Vec<f64> = vec![f64::NAN; (BINS * 13.0) as usize];
+    let bin = |n: u32| (BINS * f64::from(n.max(1)).log2()).ceil() as usize;
+    let mut bins: Vec<f64> = vec![f64::NAN; bin(HIGHEST) + 1];
     for &x in positions {
         compute(x, period, &mut |n, cosine| {
-            let turns = f64::from(n) * (x / period).abs();
-            let bin = (BINS * turns.log2()).floor();
-            if bin >= 0.0 && (bin as usize) < bins.len() {
-                let error = (f64::from(cosine) - (TAU * f64::from(n) * (x / period)).cos()).abs();
-                // NaN is where nothing came yet; max takes the number.
-                bins[bin as usize] = bins[bin as usize].max(error);
-            }
+            let error = (f64::from(cosine) - (TAU * f64::from(n) * (x / period)).cos()).abs();
+            // NaN is where nothing came yet; max takes the number.
+            bins[bin(n)] = bins[bin(n)].max(error);
         });
     }
-    let middle = |bin: usize| ((bin as f64 + 0.5) / BINS).exp2();
-    bins.iter().enumerate().filter(|(_, error)| !error.is_nan()).map(|(bin, &error)| [middle(bin), error]).collect()
+    let border = positions.iter().fold(0.0f64, |border, x| border.max(x.abs())) / period;
+    let turns = |bin: usize| (bin as f64 / BINS).exp2() * border;
+    bins.iter().enumerate().filter(|(_, error)| !error.is_nan()).map(|(bin, &error)| [turns(bin), error]).collect()
 }
 
 #[cfg(test)]
@@ -104,6 +103,8 @@ mod tests {
         assert!(at_end("cos(n") > 3e-5, "{}", at_end("cos(n"));
         assert!(at_end("Chebyshev") > 1e-2, "{}", at_end("Chebyshev"));
         assert!(at_end("rotation") > 1e-5, "{}", at_end("rotation"));
-        assert!(curves.iter().all(|curve| curve.points.iter().all(|[turns, _]| (1.0..8192.0).contains(turns))));
+        // The border is at 16/9 less half a pixel; 4096 of it are 364 turns.
+        let last = curves[0].points.last().unwrap()[0];
+        assert!((last - 4096.0 * 1919.0 / 1080.0 / 20.0).abs() < 1e-6, "{last}");
     }
 }

@@ -96,9 +96,13 @@ fn degree(results: &Results) -> Option<Plot> {
         |point: &&Point| point.planner && point.asked.is_some_and(|asked| [1e-1, 1e-2, 1e-3, 1e-4].contains(&asked));
     for point in of(results, Sweep::Tolerance).filter(planned) {
         if let Some((at, asked)) = n(point).filter(|&at| at <= last).zip(point.asked) {
-            chart = chart.mark(format!("planned for {}", exponent(asked)), Along::Vertical, at);
+            chart = chart.mark(exponent(asked), Along::Vertical, at);
         }
     }
+    // Room for the marks' labels above the curves.
+    let values = chart.series.iter().flat_map(|series| &series.points).map(|point| point[1]);
+    let least = values.filter(|&error| error > 0.0).fold(1.0, f64::min);
+    let chart = chart.range_y(0.5 * least, 20.0);
     Some(Plot { stem: "error-against-degree", caption: say::degree(), chart })
 }
 
@@ -176,7 +180,7 @@ fn size(results: &Results) -> Option<Plot> {
 fn phases(results: &Results) -> Option<Plot> {
     let mut chart = logarithmic(
         "Stability of phases: cos(n·2πx/T) by what computes it",
-        "n·x/T, turns",
+        "n·x/T at the picture’s border, turns",
         "largest error of the cosine",
     )
     .range_y(1e-8, 1.0);

@@ -9,12 +9,12 @@ use super::bench::{Arm, Bench};
 use super::point::{Point, Sweep};
 use super::sample::Sample;
 use super::{Subject, Watch};
+use crate::Result;
 use crate::certificate::sample_pixels;
 use crate::frame::Frame;
 use crate::gpu::Device;
 use crate::photo::Photo;
 use crate::plan::{Plan, Request, plan};
-use crate::{Error, Result};
 
 /// Pixels of the pictures that sweeps run at, at most: a quick look, and a thorough one.
 const QUICK_PIXELS: f64 = 3e5;
@@ -35,14 +35,8 @@ pub(super) struct Study<'a> {
 
 impl<'a> Study<'a> {
     /// # Errors
-    /// [`Error::Usage`] where nothing glares or the photo has no picture; [`Error::Gl`] where the driver refuses.
+    /// [`crate::Error::Gl`] where the driver refuses.
     pub fn new(subject: &'a Subject<'a>, device: &Rc<Device>, quick: bool) -> Result<Self> {
-        if subject.ghosts.is_empty() {
-            let name = subject.name;
-            return Err(Error::Usage(format!(
-                "nothing glares in {name}: --lights or --scene can say what does, --threshold find fainter lights"
-            )));
-        }
         let photo = at_most(subject.photo, if quick { QUICK_PIXELS } else { PIXELS });
         let most = subject.photo.frame.window.pixels().max(photo.pixels.len());
         let most = most.max(subject.photo.width() as usize * subject.photo.height() as usize);
@@ -77,13 +71,22 @@ impl<'a> Study<'a> {
     /// Points of the photo's own ghosts: their quality at the sample, and their times.
     ///
     /// # Errors
-    /// [`Error::Gl`] where the driver refuses.
+    /// [`crate::Error::Gl`] where the driver refuses.
     pub fn measured(&mut self, sweep: Sweep, plans: &[(Option<f64>, Plan)], watch: Watch<'_>) -> Result<Vec<Point>> {
         let (frame, ghosts) = (self.frame(), self.subject.ghosts);
-        let arms: Vec<_> = plans.iter().map(|(_, plan)| Arm { ghosts, plan, frame }).collect();
+        // One plan may do for many tolerances; it is timed once.
+        let mut arms: Vec<Arm<'_>> = Vec::new();
+        let mut indices = Vec::new();
+        for (_, plan) in plans {
+            let index = arms.iter().position(|arm| arm.plan == plan).unwrap_or_else(|| {
+                arms.push(Arm { ghosts, plan, frame });
+                arms.len() - 1
+            });
+            indices.push(index);
+        }
         let timings = self.bench.time(&arms, watch)?;
         let mut points = Vec::new();
-        for ((asked, plan), timing) in plans.iter().zip(&timings) {
+        for ((asked, plan), timing) in plans.iter().zip(indices.iter().map(|&index| &timings[index])) {
             self.bench.renderer.set_scene(ghosts, plan)?;
             let field = self.bench.renderer.probe(frame, &self.sample.pixels)?;
             let quality = self.sample.judge(&field);

@@ -73,9 +73,9 @@ pub(super) fn degree(study: &mut Study<'_>, watch: Watch<'_>) -> Result<Vec<Poin
     let rows = |request: Request| Request { evaluator: Some(Evaluator::Rows), ..request };
     let Some((_, tight)) = study.tightest(rows) else { return Ok(Vec::new()) };
     let last = f64::from(tight.degree[0].clamp(2, HIGHEST)) * 1.15;
-    let count = if study.quick { 11 } else { 22 };
+    let count = if study.quick { 12 } else { 24 };
     let mut degrees: Vec<u32> =
-        (0..count).map(|k| last.powf(f64::from(k) / f64::from(count - 1)).round() as u32).collect();
+        (0..count).map(|k| (1.0 + (last - 1.0) * f64::from(k) / f64::from(count - 1)).round() as u32).collect();
     degrees.dedup();
     let across = f64::from(tight.degree[1]) / f64::from(tight.degree[0].max(1));
     let mut plans = Vec::new();

@@ -4,6 +4,7 @@ mod bad_input;
 mod harmonics;
 mod outputs;
 mod refusals;
+mod tradeoff;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
