@@ -130,7 +130,7 @@ fn place(tile: Window, index: usize) -> [i32; 2] {
 
 /// Where to look: the corners and the middles of the borders, where the field was found largest, the ghosts' centres,
 /// and the rest spread evenly over the window.
-fn sample_pixels(ghosts: &[Ghost], plan: &Plan, frame: Frame) -> Vec<[i32; 2]> {
+pub(crate) fn sample_pixels(ghosts: &[Ghost], plan: &Plan, frame: Frame) -> Vec<[i32; 2]> {
     let window = frame.window;
     let most = (EFFORT / ghosts.len().max(1)).clamp(FEWEST, MOST);
     let (right, bottom) = (window.width as i32 - 1, window.height as i32 - 1);

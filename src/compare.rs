@@ -6,6 +6,8 @@ pub struct Difference {
     /// max |actual − exact| / max |exact|, the worst colour. 0 where both are nothing; infinite where something stands
     /// against an exact nothing, or where a value is not finite.
     pub relative: f64,
+    /// The root of the mean of (actual − exact)², over max |exact|, the worst colour.
+    pub rms: f64,
     /// max |actual − exact| over all colours.
     pub absolute: f64,
     /// Where the worst colour's largest error is: which value, and which colour.
@@ -33,6 +35,8 @@ pub struct Comparison {
     largest: [f64; 3],
     /// The largest error of each colour, and at which value.
     worst: [(usize, f64); 3],
+    /// The squared errors of each colour, added up.
+    squares: [f64; 3],
 }
 
 impl Comparison {
@@ -52,6 +56,7 @@ impl Comparison {
                 if error > worst.1 {
                     *worst = (self.count + index, error);
                 }
+                self.squares[colour] += error * error;
                 self.largest[colour] = self.largest[colour].max(exact[colour].abs());
             }
         }
@@ -65,13 +70,18 @@ impl Comparison {
 
     /// The difference of all values so far.
     pub fn difference(&self) -> Difference {
-        let mut result = Difference { relative: 0.0, absolute: 0.0, worst: (0, 0), not_finite: self.not_finite };
+        let mut result =
+            Difference { relative: 0.0, rms: 0.0, absolute: 0.0, worst: (0, 0), not_finite: self.not_finite };
         for colour in 0..3 {
             let (index, error) = self.worst[colour];
             let relative = if error == 0.0 { 0.0 } else { error / self.largest[colour] };
             if relative > result.relative {
                 result.relative = relative;
                 result.worst = (index, colour);
+            }
+            if error > 0.0 {
+                let mean = self.squares[colour] / self.count as f64;
+                result.rms = result.rms.max(mean.sqrt() / self.largest[colour]);
             }
             result.absolute = result.absolute.max(error);
         }
@@ -91,6 +101,7 @@ mod tests {
         assert!((difference.relative - 0.02).abs() < 1e-12, "{difference:?}");
         assert!((difference.absolute - 0.1).abs() < 1e-12, "{difference:?}");
         assert_eq!(difference.worst, (1, 1));
+        assert!((difference.rms - 0.02 / 2f64.sqrt()).abs() < 1e-12, "{difference:?}");
     }
 
     #[test]

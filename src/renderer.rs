@@ -121,6 +121,15 @@ impl Renderer {
         Ok(())
     }
 
+    /// Rounds the spectrum as a store of 16-bit floats would, whose scale is its largest term: what such a store would
+    /// cost in accuracy. The next [`Renderer::set_scene`] of the same plan keeps it; [`Renderer::forget_scene`] does not.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the driver refuses.
+    pub(crate) fn round_spectrum(&mut self) -> Result<()> {
+        self.spectrum.round_to_half()
+    }
+
     /// Adds the glare to the pixels of the frame's window, row by row from the top.
     ///
     /// # Errors

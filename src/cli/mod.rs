@@ -16,6 +16,7 @@ mod rex;
 mod scene;
 mod shell;
 mod stdout;
+mod tradeoff;
 
 use clap::{Parser, Subcommand};
 
@@ -52,6 +53,7 @@ enum Command {
     Harmonics(Box<harmonics::Args>),
     Bench(bench::Args),
     Calibrate(calibrate::Args),
+    Tradeoff(Box<tradeoff::Args>),
     Rex(rex::Args),
     Info(info::Args),
     Completions(shell::CompletionsArgs),
@@ -71,6 +73,7 @@ pub fn run(cli: Cli) -> Result<()> {
         Command::Harmonics(args) => harmonics::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Calibrate(args) => calibrate::run(&args),
+        Command::Tradeoff(args) => tradeoff::run(&args),
         Command::Rex(args) => rex::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Completions(args) => shell::completions(&args),

@@ -6,6 +6,8 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 const PATIENCE: Duration = Duration::from_secs(1);
+/// Steps of a bar.
+const PARTS: f64 = 1000.0;
 
 /// Something that takes as long as it takes, and something that can be counted.
 const STEP: &str = "{spinner} {msg} {elapsed}";
@@ -53,6 +55,17 @@ impl Progress {
     /// Says what goes on now.
     pub fn step(&self, what: impl Into<Cow<'static, str>>) {
         self.bar.set_style(style(STEP));
+        self.bar.set_message(what);
+    }
+
+    /// Says what goes on now, and how much of all is done, from 0 to 1.
+    pub fn part(&self, what: impl Into<Cow<'static, str>>, done: f64) {
+        if self.bar.length().is_none() {
+            let template = "{spinner} {bar:30} {msg} {elapsed}";
+            self.bar.set_style(ProgressStyle::with_template(template).expect("the template is sound"));
+            self.bar.set_length(PARTS as u64);
+        }
+        self.bar.set_position((done * PARTS) as u64);
         self.bar.set_message(what);
     }
 }

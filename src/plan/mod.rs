@@ -73,6 +73,8 @@ pub struct Request {
     pub degree: Option<[u32; 2]>,
     /// The evaluator, where it is not to be planned.
     pub evaluator: Option<Evaluator>,
+    /// Nodes of `grid`'s lattice a half wave of the highest harmonic, 1.02 or more, where they are not to be planned.
+    pub oversampling: Option<f64>,
     /// The most terms that the device can hold.
     pub most_terms: usize,
     /// Rounds that the renderer runs a shader's loops for one pixel.
@@ -90,6 +92,7 @@ impl Request {
             period: None,
             degree: None,
             evaluator: None,
+            oversampling: None,
             most_terms: 2 << 20,
             loop_rounds: usize::MAX,
             cost_model: CostModel::default(),
@@ -276,7 +279,8 @@ fn candidate(ghosts: &[Ghost], survey: &Survey, request: &Request, evaluator: Ev
     let weighed = &survey.weighed;
     let rounding = rounding::bound(ghosts, weighed, evaluator);
     // With the whole of the series given, there is nothing left to plan: the error is predicted as it comes.
-    let given = request.period.is_some() && request.degree.is_some() && evaluator != Evaluator::Grid;
+    let between = evaluator != Evaluator::Grid || request.oversampling.is_some();
+    let given = request.period.is_some() && request.degree.is_some() && between;
     let usable = request.tolerance - rounding;
     if usable < 0.25 * request.tolerance && !given {
         return Err(Error::ToleranceBelowFloor { asked: request.tolerance, floor: rounding / 0.75 });
@@ -346,7 +350,7 @@ fn plan_series(plan: &mut Plan, reaches: &[Reach], request: &Request, usable: f6
 /// The plan with terms and a lattice, each within its part of the tolerance.
 fn with_lattice(mut plan: Plan, request: &Request, truncation: f64, interpolation: f64) -> Result<Plan> {
     plan_terms(&mut plan, request, truncation)?;
-    let lattice = lattice::coarsest(&plan, request.frame, interpolation)?;
+    let lattice = lattice::coarsest(&plan, request.frame, request.oversampling, interpolation)?;
     plan.predicted.interpolation = lattice.error;
     plan.lattice = Some(lattice);
     Ok(plan)

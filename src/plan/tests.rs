@@ -98,3 +98,27 @@ fn the_direct_sum_knows_how_far_f32_shifts_a_small_bell() {
     let (middle, aside) = (request(&[ghost([0.0, 0.0], [1e-4; 2])]), request(&[ghost(pixel, [1e-4; 2])]));
     assert!(middle < 1e-6 && aside > 1e-3, "{middle:e} {aside:e}");
 }
+
+#[test]
+fn a_given_oversampling_is_taken_and_its_bound_falls_with_the_fourth_power() {
+    let ghosts = [ghost([0.1, 0.0], [0.3, 0.2])];
+    let of = |nodes: f64| {
+        let request = Request {
+            evaluator: Some(Evaluator::Grid),
+            period: Some(DVec2::new(6.0, 5.0)),
+            degree: Some([24, 30]),
+            oversampling: Some(nodes),
+            ..Request::new(Frame::full(160, 90), 1e-3)
+        };
+        plan(&ghosts, &request)
+    };
+    let [coarse, fine] = [4.0, 8.0].map(|nodes| of(nodes).unwrap());
+    assert_eq!(coarse.lattice.unwrap().oversampling, DVec2::splat(4.0));
+    assert_eq!(fine.lattice.unwrap().step * 2.0, coarse.lattice.unwrap().step);
+    let ratio = coarse.predicted.interpolation / fine.predicted.interpolation;
+    assert!((14.0..18.0).contains(&ratio), "{ratio}");
+    // A spline needs more than one node a half wave; a lattice can be too large.
+    for nodes in [0.0, 1.0, -2.0, f64::NAN, f64::INFINITY, 1000.0] {
+        assert!(matches!(of(nodes), Err(Error::Plan(_))), "{nodes}");
+    }
+}

@@ -9,8 +9,6 @@
 
 mod benchmark;
 mod book;
-mod chance;
-pub mod chart;
 mod cosine_2d;
 mod fourier_1d;
 mod fourier_1d_gpu;
@@ -25,6 +23,8 @@ mod paraboloid_bessel;
 mod plane;
 mod report;
 
+use crate::chance;
+pub use crate::chart;
 pub use book::Book;
 pub use lab::Lab;
 pub use report::{Field, Figure, Numbers, Report, Table};
