@@ -22,7 +22,7 @@ layout(std140, binding = BINDING_PASS) uniform Pass {
 layout(std140, binding = BINDING_SAMPLES) uniform Samples {
     vec4 samples[1024]; // 16 KiB, which every OpenGL has; each ghost begins at a vec4
 };
-layout(std430, binding = BINDING_COEFFICIENTS) writeonly buffer Coefficients {
+layout(std430, binding = BINDING_PARTIALS) writeonly buffer Coefficients {
     vec2 coefficients[]; // (a_n, b_n), ghost after ghost
 };
 

@@ -8,10 +8,10 @@ layout(std140, binding = BINDING_PASS) uniform Pass {
     uint pad0;
     uint pad1;
 };
-layout(std430, binding = BINDING_COEFFICIENTS) readonly buffer Coefficients {
+layout(std430, binding = BINDING_PARTIALS) readonly buffer Coefficients {
     vec2 coefficients[];
 };
-layout(std430, binding = BINDING_SUMS) writeonly buffer Sums {
+layout(std430, binding = BINDING_SPECTRUM) writeonly buffer Sums {
     vec2 sums[];
 };
 

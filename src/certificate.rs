@@ -1,7 +1,7 @@
-//! The error of a field that was rendered, measured against the direct sum in f64 at sample pixels.
+//! The error of a field that was rendered, measured against the direct sum in f64, at sample pixels or at all of them.
 
-use crate::compare::compare_in;
-use crate::frame::Frame;
+use crate::compare::{Comparison, compare_in};
+use crate::frame::{Frame, Window};
 use crate::plan::Plan;
 use crate::reference;
 use crate::renderer::Renderer;
@@ -14,6 +14,20 @@ const MOST: usize = 384;
 /// Bells that it may evaluate in f64: many ghosts get fewer pixels.
 const EFFORT: usize = 20_000_000;
 
+/// Pixels of which the direct sum is taken at once where all are: little memory, and enough for every core.
+const BATCH: usize = 1 << 14;
+
+/// Where a field is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, clap::ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Verify {
+    /// At some hundred pixels
+    #[default]
+    Sample,
+    /// At every pixel: as slow as the direct sum on the CPU
+    Full,
+}
+
 /// What was asked, what was predicted and what was measured; all relative to the field's largest value.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Certificate {
@@ -21,8 +35,10 @@ pub struct Certificate {
     pub asked: f64,
     /// The plan's bound.
     pub predicted: f64,
-    /// The largest error at the sample pixels, the worst colour.
+    /// The largest error at the pixels looked at, the worst colour.
     pub measured: f64,
+    /// Which pixels those are.
+    pub verify: Verify,
     /// How many pixels were looked at.
     pub pixels: usize,
     /// The pixel with the largest error, as column and row of the picture.
@@ -46,8 +62,50 @@ impl Certificate {
             asked,
             predicted: plan.predicted.total(),
             measured: difference.relative,
+            verify: Verify::Sample,
             pixels: pixels.len(),
             worst_pixel: pixels.get(difference.worst.0).copied().unwrap_or_default(),
+            not_finite: difference.not_finite,
+        })
+    }
+
+    /// Measures the renderer's field, which must be that of `ghosts` and `plan`, at every pixel of the frame's window;
+    /// `advance` is told how many more are done.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the driver refuses.
+    pub fn measure_all(
+        renderer: &mut Renderer,
+        ghosts: &[Ghost],
+        plan: &Plan,
+        frame: Frame,
+        asked: f64,
+        mut advance: impl FnMut(usize),
+    ) -> Result<Self> {
+        let mut comparison = Comparison::in_units(plan.scale);
+        // Where each tile's values begin among all of them.
+        let mut tiles: Vec<(usize, Window)> = Vec::new();
+        renderer.field(frame, |tile, rendered| {
+            tiles.push((comparison.count(), tile));
+            for (batch, rendered) in rendered.chunks(BATCH).enumerate() {
+                let place = |k: usize| {
+                    let [i, j] = place(tile, batch * BATCH + k);
+                    frame.position(f64::from(i), f64::from(j))
+                };
+                let points: Vec<_> = (0..rendered.len()).map(place).collect();
+                comparison.add(&reference::direct_at(ghosts, &points), rendered);
+                advance(rendered.len());
+            }
+        })?;
+        let difference = comparison.difference();
+        let worst = tiles.iter().rev().find(|(first, _)| *first <= difference.worst.0);
+        Ok(Self {
+            asked,
+            predicted: plan.predicted.total(),
+            measured: difference.relative,
+            verify: Verify::Full,
+            pixels: comparison.count(),
+            worst_pixel: worst.map_or([0; 2], |&(first, tile)| place(tile, difference.worst.0 - first)),
             not_finite: difference.not_finite,
         })
     }
@@ -65,9 +123,15 @@ impl Certificate {
     }
 }
 
+/// The pixel of a tile by its number, row by row from the top.
+fn place(tile: Window, index: usize) -> [i32; 2] {
+    let (row, column) = (index / tile.width as usize, index % tile.width as usize);
+    [tile.x + column as i32, tile.y + row as i32]
+}
+
 /// Where to look: the corners and the middles of the borders, where the field was found largest, the ghosts' centres,
 /// and the rest spread evenly over the window.
-fn sample_pixels(ghosts: &[Ghost], plan: &Plan, frame: Frame) -> Vec<[i32; 2]> {
+pub(crate) fn sample_pixels(ghosts: &[Ghost], plan: &Plan, frame: Frame) -> Vec<[i32; 2]> {
     let window = frame.window;
     let most = (EFFORT / ghosts.len().max(1)).clamp(FEWEST, MOST);
     let (right, bottom) = (window.width as i32 - 1, window.height as i32 - 1);
@@ -122,6 +186,7 @@ mod tests {
             asked: 1e-3,
             predicted: 5e-4,
             measured,
+            verify: Verify::Sample,
             pixels: 1,
             worst_pixel: [0, 0],
             not_finite: 0,

@@ -37,6 +37,10 @@ pub enum Error {
     #[error("a tolerance of {asked:.1e} is below what 32-bit floats can give here: {floor:.1e}")]
     ToleranceBelowFloor { asked: f64, floor: f64 },
 
+    /// Even the loosest plan is expected to take longer than it may.
+    #[error("a budget of {asked:.3} ms is below what the cheapest plan is expected to cost here: {least:.3} ms")]
+    BudgetTooSmall { asked: f64, least: f64 },
+
     /// The rendered field is further from the truth than was asked.
     #[error("the glare is off by {measured:.1e} of its largest value, and {asked:.1e} was asked")]
     ToleranceMissed { asked: f64, measured: f64 },
@@ -68,11 +72,14 @@ pub enum Error {
 
 impl Error {
     /// What the program exits with: 1 in general, 2 where the command line asks for the impossible, 3 where the
-    /// tolerance cannot be or was not met, 4 where there is no OpenGL. (clap's own usage errors exit with 2 as well.)
+    /// tolerance or the budget cannot be or was not met, 4 where there is no OpenGL. (clap's own usage errors exit with 2 as well.)
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::UnknownPreset { .. } | Self::Usage(_) => 2,
-            Self::ToleranceBelowFloor { .. } | Self::ToleranceMissed { .. } | Self::Missed { .. } => 3,
+            Self::ToleranceBelowFloor { .. }
+            | Self::BudgetTooSmall { .. }
+            | Self::ToleranceMissed { .. }
+            | Self::Missed { .. } => 3,
             Self::NoContext { .. } => 4,
             _ => 1,
         }

@@ -18,16 +18,21 @@
 //! | [`mod@reference`] | the definition of the field in f64, by direct sum and by direct series |
 //! | [`compare`], [`certificate`] | the one error metric, and a rendered field held against the definition |
 //! | [`measure`] | arms timed in turns, and their ratios |
+//! | [`chart`] | numbers → charts and pictures in false colours |
 //! | [`rex`] | the research prototype's experiments, as figures and numbers |
+//! | [`tradeoff`] | a photo and its ghosts → accuracy against time, measured here |
 //! | [`cli`] | the commands |
 
 pub mod certificate;
+mod chance;
+pub mod chart;
 pub mod cli;
 pub mod compare;
 pub mod error;
 pub mod frame;
 pub mod gpu;
 pub mod measure;
+mod page;
 pub mod photo;
 pub mod plan;
 pub mod reference;
@@ -36,5 +41,6 @@ pub mod rex;
 pub mod scene;
 pub mod series;
 mod target;
+pub mod tradeoff;
 
 pub use error::{Error, Result};

@@ -95,19 +95,44 @@ pub fn interleave<F: FnMut() -> Result<()> + ?Sized, const N: usize>(
     rounds: Rounds,
     mut arms: [&mut F; N],
 ) -> Result<[Samples; N]> {
-    for _ in 0..rounds.warm_up {
-        arms.iter_mut().try_for_each(|arm| arm())?;
-    }
     let mut samples = [(); N].map(|()| Samples::default());
-    for round in 0..rounds.timed {
-        for turn in 0..N {
-            let index = if round % 2 == 0 { turn } else { N - 1 - turn };
-            let started = Instant::now();
-            arms[index]()?;
-            samples[index].0.push(started.elapsed().as_secs_f64() * 1e3);
-        }
+    let times = in_turns(rounds, N, |index| {
+        let started = Instant::now();
+        arms[index]()?;
+        Ok(started.elapsed().as_secs_f64() * 1e3)
+    })?;
+    for (samples, times) in samples.iter_mut().zip(times) {
+        samples.0 = times;
     }
     Ok(samples)
+}
+
+/// Runs `count` arms in turns and gives what each brought back, round after round; what the warm-up brings is dropped.
+///
+/// # Errors
+/// The first that an arm gives.
+pub fn in_turns<T>(rounds: Rounds, count: usize, mut arm: impl FnMut(usize) -> Result<T>) -> Result<Vec<Vec<T>>> {
+    for _ in 0..rounds.warm_up {
+        (0..count).try_for_each(|index| arm(index).map(drop))?;
+    }
+    let mut brought: Vec<Vec<T>> = (0..count).map(|_| Vec::with_capacity(rounds.timed)).collect();
+    for round in 0..rounds.timed {
+        for turn in 0..count {
+            let index = if round % 2 == 0 { turn } else { count - 1 - turn };
+            brought[index].push(arm(index)?);
+        }
+    }
+    Ok(brought)
+}
+
+/// Where a ratio, by what it depends on, rises through 1 for the last time; straight between its points on logarithmic
+/// scales. None where it does not.
+pub fn crossover(ratios: &[[f64; 2]]) -> Option<f64> {
+    let rises = |pair: &&[[f64; 2]]| pair[0][1] < 1.0 && pair[1][1] >= 1.0;
+    ratios.windows(2).rfind(rises).map(|pair| {
+        let [[from, below], [to, above]] = [pair[0], pair[1]].map(|point| point.map(f64::ln));
+        (from + (to - from) * below / (below - above)).exp()
+    })
 }
 
 #[cfg(test)]
@@ -170,6 +195,15 @@ mod tests {
         // One slow outlier moves neither.
         let outlier = samples(&[3.0, 3.0, 15.0, 6000.0]);
         assert_eq!(outlier.over(&once).paired, 3.0);
+    }
+
+    #[test]
+    fn the_crossover_lies_where_the_ratio_is_one() {
+        // 0.02 K milliseconds against 1 millisecond.
+        let ratios: Vec<_> = (0..11).map(|power| f64::from(1 << power)).map(|count| [count, 0.02 * count]).collect();
+        assert!((crossover(&ratios).unwrap() - 50.0).abs() < 1e-9);
+        assert_eq!(crossover(&ratios[..5]), None);
+        assert_eq!(crossover(&ratios[7..]), None);
     }
 
     #[test]

@@ -121,6 +121,15 @@ impl Renderer {
         Ok(())
     }
 
+    /// Rounds the spectrum as a store of 16-bit floats would, whose scale is its largest term: what such a store would
+    /// cost in accuracy. The next [`Renderer::set_scene`] of the same plan keeps it; [`Renderer::forget_scene`] does not.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the driver refuses.
+    pub(crate) fn round_spectrum(&mut self) -> Result<()> {
+        self.spectrum.round_to_half()
+    }
+
     /// Adds the glare to the pixels of the frame's window, row by row from the top.
     ///
     /// # Errors
@@ -240,6 +249,25 @@ impl Renderer {
             self.runner.device().check("looking up the field")?;
         }
         Ok(values)
+    }
+
+    /// The field, neither normalised nor multiplied by any strength, at every pixel of the frame's window: `visit` gets
+    /// tile after tile, each with its values row by row from the top.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the driver refuses, or where there is no scene.
+    pub fn field(&mut self, frame: Frame, mut visit: impl FnMut(Window, &[[f64; 3]])) -> Result<()> {
+        let scale = self.plan()?.scale;
+        for tile in self.tiles(frame.window) {
+            let source = self.evaluate(frame, tile)?;
+            let mut pixels = vec![[0.0f32; 4]; tile.pixels()];
+            let field = self.field.draw(&self.runner, source, tile.width, tile.height)?;
+            field.read(&mut pixels, tile.width as usize, tile.width, tile.height);
+            self.runner.device().check("reading the field")?;
+            let value = |pixel: &[f32; 4]| [0, 1, 2].map(|colour| f64::from(pixel[colour]) * scale[colour]);
+            visit(tile, &pixels.iter().map(value).collect::<Vec<_>>());
+        }
+        Ok(())
     }
 
     /// Whether each pass is timed from now on; that makes the passes wait for each other.

@@ -5,12 +5,13 @@ mod first;
 mod gaussians;
 mod many;
 mod report;
-mod scenes;
+pub(super) mod scenes;
 mod stage;
 
 use std::path::PathBuf;
 use std::time::Instant;
 
+use super::calibration::CalibrationArgs;
 use super::{BackendChoice, stdout};
 use crate::gpu::Device;
 use crate::measure::Rounds;
@@ -71,6 +72,9 @@ pub struct Args {
     /// Fail where a bar is missed
     #[arg(long)]
     strict: bool,
+
+    #[command(flatten)]
+    calibration: CalibrationArgs,
 }
 
 const EXAMPLES: &str = "\
@@ -124,7 +128,11 @@ fn measure(args: &Args) -> Result<Report> {
     let device = Device::open(args.backend.backends())?;
     let opened = started.elapsed();
 
-    let stage = Stage::new(device, args.size, rounds);
+    let known = args.calibration.known(Some(device.info()));
+    if let Some(warning) = &known.warning {
+        eprintln!("vglare: warning: {warning}");
+    }
+    let stage = Stage::new(device, args.size, rounds, known.model);
     let mut report = Report::new(stage.device().info(), args.size, rounds);
     if let Some(count) = args.gaussians {
         gaussians::of_one_size(&stage, &mut report, count as usize, args.sigma, args.tolerance)?;

@@ -1,11 +1,14 @@
 //! `vglare info`: what there is to compute on.
 
 use std::io::{self, Write};
+use std::rc::Rc;
 
+use comfy_table::{CellAlignment, Table, presets};
 use serde::Serialize;
 
 use super::stdout;
 use crate::Result;
+use crate::gpu::precision::{self, Precision};
 use crate::gpu::{Backend, Device, Info};
 
 /// Show the renderer, its limits, and which backends work
@@ -16,6 +19,10 @@ pub struct Args {
     /// Print JSON
     #[arg(long)]
     json: bool,
+
+    /// Measure how exact the renderer's sin, cos and exp are in 32-bit floats, and vglare's own phases
+    #[arg(long)]
+    precision: bool,
 }
 
 /// One backend, working or not.
@@ -27,24 +34,32 @@ struct Report {
     info: Option<Info>,
     #[serde(skip_serializing_if = "Option::is_none")]
     reason: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    precision: Option<Vec<Precision>>,
     debian_packages: &'static str,
 }
 
 /// Prints what each backend says of itself.
 ///
 /// # Errors
-/// Where standard output cannot be written. A backend that does not work is no error here.
+/// Where standard output cannot be written, or the precision cannot be measured. A backend that does not work is no
+/// error here.
 pub fn run(args: &Args) -> Result<()> {
-    let reports: Vec<Report> = Backend::ALL.into_iter().map(report).collect();
+    let reports: Vec<Report> =
+        Backend::ALL.into_iter().map(|backend| report(backend, args.precision)).collect::<Result<_>>()?;
     stdout::print(|out| if args.json { json(out, &reports) } else { text(out, &reports) })
 }
 
-fn report(backend: Backend) -> Report {
-    let (info, reason) = match Device::try_open(backend) {
-        Ok(device) => (Some(device.info().clone()), None),
-        Err(reason) => (None, Some(reason)),
+fn report(backend: Backend, precise: bool) -> Result<Report> {
+    let (info, reason, precision) = match Device::try_open(backend) {
+        Ok(device) => {
+            let device = Rc::new(device);
+            let precision = precise.then(|| precision::measure(&device)).transpose()?;
+            (Some(device.info().clone()), None, precision)
+        }
+        Err(reason) => (None, Some(reason), None),
     };
-    Report { backend, works: info.is_some(), info, reason, debian_packages: backend.packages() }
+    Ok(Report { backend, works: info.is_some(), info, reason, precision, debian_packages: backend.packages() })
 }
 
 fn json(out: &mut dyn Write, reports: &[Report]) -> io::Result<()> {
@@ -66,6 +81,9 @@ fn text(out: &mut dyn Write, reports: &[Report]) -> io::Result<()> {
             (Some(info), _) => {
                 writeln!(out, "\n{}: works{mark}", report.backend)?;
                 describe(out, info)?;
+                if let Some(precision) = &report.precision {
+                    about_precision(out, precision)?;
+                }
             }
             (None, reason) => {
                 writeln!(out, "\n{}: does not work: {}", report.backend, reason.as_deref().unwrap_or("unknown"))?;
@@ -88,4 +106,18 @@ fn describe(out: &mut dyn Write, info: &Info) -> io::Result<()> {
     let [x, y, z] = limits.work_groups;
     let (invocations, shared) = (limits.work_group_invocations, limits.shared_memory >> 10);
     writeln!(out, "  work groups        {x} x {y} x {z} of {invocations} invocations, {shared} KiB shared")
+}
+
+fn about_precision(out: &mut dyn Write, ranges: &[Precision]) -> io::Result<()> {
+    writeln!(out, "  worst errors in f32, for arguments x or harmonics n up to")?;
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING);
+    table.set_header(["", "sin x", "cos x", "exp(-x), relative", "vglare's phases, n φ", "not finite"]);
+    for range in ranges {
+        let errors = [range.sin, range.cos, range.exp, range.cis].map(|error| format!("{error:.1e}"));
+        let [sin, cos, exp, cis] = errors;
+        table.add_row([format!("{}", range.up_to), sin, cos, exp, cis, range.not_finite.to_string()]);
+    }
+    table.column_iter_mut().for_each(|column| column.set_cell_alignment(CellAlignment::Right));
+    table.lines().try_for_each(|line| writeln!(out, "    {}", line.trim_end()))
 }

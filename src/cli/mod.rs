@@ -1,16 +1,22 @@
 //! The commands, one file each.
 
+mod accuracy;
 mod apply;
 mod bench;
+mod calibrate;
+mod calibration;
 mod harmonics;
 mod info;
 mod lights;
 mod numbers;
+mod plan;
 mod presets;
 mod progress;
 mod rex;
+mod scene;
 mod shell;
 mod stdout;
+mod tradeoff;
 
 use clap::{Parser, Subcommand};
 
@@ -32,7 +38,8 @@ Exit codes:
   0  done
   1  a file could not be read or written, or the driver failed
   2  the command line is wrong
-  3  the tolerance is below what 32-bit floats can give, or was missed under --strict, or a bench's bar was
+  3  the tolerance is below what 32-bit floats can give, or was missed under --strict, or a bench's bar was;
+     or the budget is below what the cheapest plan costs
   4  there is no OpenGL 4.3
 
 `vglare COMMAND --help` says more of each command, with examples.";
@@ -40,10 +47,13 @@ Exit codes:
 #[derive(Debug, Subcommand)]
 enum Command {
     Apply(Box<apply::Args>),
+    Plan(Box<plan::Args>),
     Lights(lights::Args),
     Presets(presets::Args),
     Harmonics(Box<harmonics::Args>),
     Bench(bench::Args),
+    Calibrate(calibrate::Args),
+    Tradeoff(Box<tradeoff::Args>),
     Rex(rex::Args),
     Info(info::Args),
     Completions(shell::CompletionsArgs),
@@ -57,10 +67,13 @@ enum Command {
 pub fn run(cli: Cli) -> Result<()> {
     match cli.command {
         Command::Apply(args) => apply::run(&args),
+        Command::Plan(args) => plan::run(&args),
         Command::Lights(args) => lights::run(&args),
         Command::Presets(args) => presets::run(&args),
         Command::Harmonics(args) => harmonics::run(&args),
         Command::Bench(args) => bench::run(&args),
+        Command::Calibrate(args) => calibrate::run(&args),
+        Command::Tradeoff(args) => tradeoff::run(&args),
         Command::Rex(args) => rex::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Completions(args) => shell::completions(&args),

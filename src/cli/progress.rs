@@ -6,6 +6,16 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 const PATIENCE: Duration = Duration::from_secs(1);
+/// Steps of a bar.
+const PARTS: f64 = 1000.0;
+
+/// Something that takes as long as it takes, and something that can be counted.
+const STEP: &str = "{spinner} {msg} {elapsed}";
+const MEASURED: &str = "{spinner} {msg} {wide_bar} {percent} % {elapsed}";
+
+fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).expect("the template is sound")
+}
 
 /// The line; gone when dropped.
 pub struct Progress {
@@ -16,7 +26,7 @@ impl Progress {
     /// Starts it, hidden at first; `quiet` keeps it hidden.
     pub fn start(quiet: bool) -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
-        bar.set_style(ProgressStyle::with_template("{spinner} {msg} {elapsed}").expect("the template is sound"));
+        bar.set_style(style(STEP));
         if !quiet {
             let shown = bar.downgrade();
             std::thread::spawn(move || {
@@ -31,8 +41,31 @@ impl Progress {
         Self { bar }
     }
 
+    /// From now on shows how much of `total` is done.
+    pub fn measured(&self, total: usize) {
+        self.bar.set_style(style(MEASURED));
+        self.bar.set_length(total as u64);
+    }
+
+    /// So much more is done.
+    pub fn advance(&self, by: usize) {
+        self.bar.inc(by as u64);
+    }
+
     /// Says what goes on now.
     pub fn step(&self, what: impl Into<Cow<'static, str>>) {
+        self.bar.set_style(style(STEP));
+        self.bar.set_message(what);
+    }
+
+    /// Says what goes on now, and how much of all is done, from 0 to 1.
+    pub fn part(&self, what: impl Into<Cow<'static, str>>, done: f64) {
+        if self.bar.length().is_none() {
+            let template = "{spinner} {bar:30} {msg} {elapsed}";
+            self.bar.set_style(ProgressStyle::with_template(template).expect("the template is sound"));
+            self.bar.set_length(PARTS as u64);
+        }
+        self.bar.set_position((done * PARTS) as u64);
         self.bar.set_message(what);
     }
 }

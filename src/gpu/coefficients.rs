@@ -3,7 +3,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::layout::{COEFFICIENTS, PASS, SAMPLES, SUMS};
+use super::layout::{PARTIALS, PASS, SAMPLES, SPECTRUM};
 use super::resource::Buffer;
 use super::runner::Runner;
 use crate::{Error, Result};
@@ -74,8 +74,8 @@ impl CoefficientsPass {
         let [sample_count, mode_count] = [ghosts.len() as u32, modes as u32];
         self.uniforms.store(&[Dispatch { sample_count, mode_count, ..Dispatch::zeroed() }])?;
         self.uniforms.bind_uniform(PASS);
-        self.coefficients.bind_storage(COEFFICIENTS);
-        self.sums.bind_storage(SUMS);
+        self.coefficients.bind_storage(PARTIALS);
+        self.sums.bind_storage(SPECTRUM);
         runner.dispatch("coefficients_sum.comp", &[], [mode_count.div_ceil(MODES), 1, 1])?;
         runner.device().check("summing coefficients")?;
         Ok(self.sums.read(modes))
@@ -108,7 +108,7 @@ impl CoefficientsPass {
                 pad: [0.0; 3],
             }])?;
             self.uniforms.bind_uniform(PASS);
-            self.coefficients.bind_storage(COEFFICIENTS);
+            self.coefficients.bind_storage(PARTIALS);
             let groups = [batch.len() as u32, (modes as u32).div_ceil(MODES), 1];
             runner.dispatch("coefficients.comp", &[], groups)?;
         }

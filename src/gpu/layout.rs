@@ -23,9 +23,10 @@ pub(crate) const PHASES: Binding = ("BINDING_PHASES", 4);
 pub(crate) const PROBES: Binding = ("BINDING_PROBES", 5);
 pub(crate) const TABLE: Binding = ("BINDING_TABLE", 6);
 pub(crate) const SHAPES: Binding = ("BINDING_SHAPES", 7);
-/// Of passes that no evaluator is bound for meanwhile: eight numbers are all that GL 4.3 promises.
-pub(crate) const COEFFICIENTS: Binding = ("BINDING_COEFFICIENTS", 6);
-pub(crate) const SUMS: Binding = ("BINDING_SUMS", 7);
+
+/// Of the measurement of precision, which no other pass is bound for meanwhile.
+pub(crate) const ARGUMENTS: Binding = ("BINDING_ARGUMENTS", 0);
+pub(crate) const VALUES: Binding = ("BINDING_VALUES", 1);
 
 /// Texture units.
 pub(crate) const PHOTO: Binding = ("UNIT_PHOTO", 0);
@@ -60,8 +61,8 @@ pub(crate) const BINDINGS: [Binding; 26] = [
     PROBES,
     TABLE,
     SHAPES,
-    COEFFICIENTS,
-    SUMS,
+    ARGUMENTS,
+    VALUES,
     PHOTO,
     FIELD,
     HARMONICS_X,

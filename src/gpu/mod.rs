@@ -13,6 +13,7 @@
 //! | `coefficients` | samples of any function → its coefficients |
 //! | `lines` | curves as line strips |
 //! | `copy` | the yardstick of the bench |
+//! | `precision` | how exact the driver's sin, cos and exp are, and vglare's phases |
 
 pub(crate) mod coefficients;
 pub(crate) mod composite;
@@ -24,6 +25,7 @@ pub(crate) mod graf;
 mod harmonics;
 pub(crate) mod layout;
 pub(crate) mod lines;
+pub mod precision;
 pub(crate) mod range;
 pub(crate) mod resource;
 pub(crate) mod runner;

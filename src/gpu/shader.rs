@@ -49,6 +49,7 @@ const SOURCES: &[(&str, &str)] = &sources![
     "lattice.frag",
     "lines.frag",
     "lines.vert",
+    "precision.comp",
     "probe.frag",
     "profiles.frag",
     "range.frag",

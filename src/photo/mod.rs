@@ -34,6 +34,7 @@ mod png;
 mod primaries;
 mod radiance;
 mod read;
+mod shown;
 mod tiff;
 mod tone;
 mod transfer;
@@ -47,7 +48,9 @@ pub use bad::{BadKind, BadPixels, survey};
 pub use format::{Depth, Format};
 pub use primaries::Primaries;
 pub use read::{MAX_PIXELS, read};
+pub(crate) use shown::Shown;
 pub use tone::ToneMap;
+pub(crate) use transfer::srgb_encode;
 pub use write::{WriteOptions, check_target, write};
 
 use crate::frame::Frame;

@@ -55,7 +55,7 @@ fn hlg(v: f64) -> f64 {
 }
 
 /// [SRGB] the encoded value of `light` in 0..1.
-pub(super) fn srgb_encode(light: f32) -> f32 {
+pub(crate) fn srgb_encode(light: f32) -> f32 {
     if light <= 0.003_130_8 { light * 12.92 } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 }
 }
 

@@ -19,7 +19,7 @@ pub(super) fn ghosts(ghosts: &[Ghost]) -> Result<()> {
                 "sizes of {:e} x {:e}, and each has to be from {smallest:.1e} to {largest:.1e}",
                 ghost.size.x, ghost.size.y
             )
-        } else if !(ghost.center.abs().max_element() <= largest) || ghost.center.is_nan() {
+        } else if ghost.center.is_nan() || ghost.center.abs().max_element() > largest {
             format!("its centre at ({:e}, {:e}), beyond what 32-bit floats hold", ghost.center.x, ghost.center.y)
         } else if let Some(radiance) = ghost.radiance.iter().find(|radiance| !radiance.is_finite()) {
             format!("a radiance of {radiance}")
@@ -47,7 +47,7 @@ pub(super) fn request(request: &Request) -> Result<()> {
 
 /// Refuses a field that is brighter than a pixel of f32 can be.
 pub(super) fn scale(scale: [f64; 3]) -> Result<()> {
-    match scale.into_iter().find(|&scale| !(scale <= BRIGHTEST)) {
+    match scale.into_iter().find(|&scale| scale.is_nan() || scale > BRIGHTEST) {
         Some(scale) => {
             Err(Error::Plan(format!("the field reaches {scale:.1e}, and {BRIGHTEST:e} is what vglare renders")))
         }

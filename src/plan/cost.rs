@@ -2,27 +2,70 @@
 
 use super::{Evaluator, Plan, Request};
 
-/// Nanoseconds on a software renderer (llvmpipe, 256 bits) on two cores at 1920 × 1080: medians of one run of
-/// `vglare bench --rounds 8`, less what a copy takes, divided by the work; while a copy took 3 to 5 ns a pixel. The plan
-/// needs their ratios only, and those hold well enough on a real GPU, where everything is about a thousand times faster.
-mod nanoseconds {
-    /// One bell at one pixel: `direct`, K = 45.
-    pub const BELL: f64 = 4.0;
-    /// One term of the series at one pixel: `series`, N = M = 10.
-    pub const TERM: f64 = 5.4;
-    /// One harmonic of a row's profile at one pixel: `rows`, N = 10 (3.0) and 57 (2.7).
-    pub const HARMONIC: f64 = 2.8;
-    /// One term on the way to a row's profiles: `rows`, N = 57.
-    pub const PROFILE: f64 = 7.0;
-    /// One cell of the lattice stretched to one row: `grid`, K = 1000 (25) and 45 (36).
-    pub const STRIP: f64 = 27.0;
-    /// One interpolation at one pixel: `grid`, the same two (7.3 and 8.4).
-    pub const INTERPOLATION: f64 = 7.5;
-    /// One term of one ghost, roughly: K = 1000 (3 to 8, with what else the machine did) and, at N = M = 10 where half
-    /// of the tiles' modes are idle, K = 100,000 (16).
-    pub const SPECTRUM: f64 = 6.0;
-    /// Starting a pass: what the smallest take.
-    pub const PASS: f64 = 100_000.0;
+/// Nanoseconds that each kind of work takes on one machine; every one of them finite and above 0.
+///
+/// The [`Default`] is a software renderer (llvmpipe, 256 bits) on two cores at 1920 × 1080: medians of one run of
+/// `vglare bench --rounds 8`, less what a copy takes, divided by the work; while a copy took 3 to 5 ns a pixel. To choose
+/// an evaluator the plan needs their ratios only; a budget in milliseconds needs the values of the machine at hand,
+/// which `vglare calibrate` measures.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CostModel {
+    /// One bell at one pixel, by `direct`.
+    pub bell: f64,
+    /// One term of the series at one pixel, by `series`.
+    pub term: f64,
+    /// One harmonic of a row's profile at one pixel, by `rows`.
+    pub harmonic: f64,
+    /// One term on the way to a row's profiles, by `rows`.
+    pub profile: f64,
+    /// One cell of the lattice stretched to one row, by `grid`.
+    pub strip: f64,
+    /// One interpolation at one pixel, by `grid`.
+    pub interpolation: f64,
+    /// One term of one ghost, in the spectrum.
+    pub spectrum: f64,
+    /// Starting a pass.
+    pub pass: f64,
+}
+
+impl Default for CostModel {
+    fn default() -> Self {
+        Self {
+            bell: 4.0,          // K = 45
+            term: 5.4,          // N = M = 10
+            harmonic: 2.8,      // N = 10 (3.0) and 57 (2.7)
+            profile: 7.0,       // N = 57
+            strip: 27.0,        // K = 1000 (25) and 45 (36)
+            interpolation: 7.5, // the same two (7.3 and 8.4)
+            // K = 1000 (3 to 8, with what else the machine did) and, at N = M = 10 where half of the tiles' modes are
+            // idle, K = 100,000 (16).
+            spectrum: 6.0,
+            pass: 100_000.0, // what the smallest take
+        }
+    }
+}
+
+impl CostModel {
+    /// The constants' names, in the order of [`CostModel::values`].
+    pub const NAMES: [&'static str; 8] =
+        ["bell", "term", "harmonic", "profile", "strip", "interpolation", "spectrum", "pass"];
+
+    /// The constants in nanoseconds, in the order of [`CostModel::NAMES`].
+    pub fn values(&self) -> [f64; 8] {
+        let &Self { bell, term, harmonic, profile, strip, interpolation, spectrum, pass } = self;
+        [bell, term, harmonic, profile, strip, interpolation, spectrum, pass]
+    }
+
+    /// The constants from nanoseconds, in the order of [`CostModel::NAMES`].
+    pub fn from_values([bell, term, harmonic, profile, strip, interpolation, spectrum, pass]: [f64; 8]) -> Self {
+        Self { bell, term, harmonic, profile, strip, interpolation, spectrum, pass }
+    }
+
+    /// Whether every constant is what a time can be: finite and above 0.
+    pub fn is_sound(&self) -> bool {
+        self.values().iter().all(|&value| value.is_finite() && value > 0.0)
+    }
 }
 
 /// What one evaluator is expected to cost.
@@ -30,32 +73,33 @@ mod nanoseconds {
 pub struct Cost {
     /// The evaluator.
     pub evaluator: Evaluator,
-    /// Milliseconds on the machine that the constants were measured on.
+    /// Milliseconds for spectrum and field on the machine that the cost model was measured on.
     pub milliseconds: f64,
 }
 
 /// The cost of a plan.
 pub(super) fn estimate(plan: &Plan, request: &Request) -> Cost {
-    use nanoseconds::*;
+    let model = request.cost_model;
     let window = request.frame.window;
     let pixels = window.pixels() as f64;
     let rows = |rows: f64, columns: f64| {
-        rows * plan.terms as f64 * PROFILE + rows * columns * f64::from(plan.degree[0] + 1) * HARMONIC
+        rows * plan.terms as f64 * model.profile + rows * columns * f64::from(plan.degree[0] + 1) * model.harmonic
     };
-    let spectrum: f64 = plan
-        .groups
-        .iter()
-        .map(|group| group.ghosts as f64 * f64::from(group.degree[0] + 1) * f64::from(group.degree[1] + 1) * SPECTRUM)
-        .sum();
+    let terms = |degree: [u32; 2]| f64::from(degree[0] + 1) * f64::from(degree[1] + 1);
+    let spectrum: f64 =
+        plan.groups.iter().map(|group| group.ghosts as f64 * terms(group.degree) * model.spectrum).sum();
     let field = match plan.evaluator {
-        Evaluator::Direct => pixels * plan.ghosts() as f64 * BELL + PASS,
-        Evaluator::Series => spectrum + pixels * plan.terms as f64 * TERM + 4.0 * PASS,
-        Evaluator::Rows => spectrum + rows(f64::from(window.height), f64::from(window.width)) + 5.0 * PASS,
+        Evaluator::Direct => pixels * plan.ghosts() as f64 * model.bell + model.pass,
+        Evaluator::Series => spectrum + pixels * plan.terms as f64 * model.term + 4.0 * model.pass,
+        Evaluator::Rows => spectrum + rows(f64::from(window.height), f64::from(window.width)) + 5.0 * model.pass,
         Evaluator::Grid => {
             let [columns, lines] = plan.lattice.map_or([0.0; 2], |lattice| lattice.nodes.map(f64::from));
-            let strips = columns * f64::from(window.height);
-            spectrum + rows(lines, columns) + strips * STRIP + pixels * INTERPOLATION + 7.0 * PASS
+            let strips = columns * f64::from(window.height) * model.strip;
+            spectrum + rows(lines, columns) + strips + pixels * model.interpolation + GRID_PASSES * model.pass
         }
     };
     Cost { evaluator: plan.evaluator, milliseconds: field * 1e-6 }
 }
+
+/// Passes that spectrum and field take by `grid`.
+pub const GRID_PASSES: f64 = 7.0;

@@ -42,18 +42,26 @@ impl Marginal {
     }
 }
 
-/// The coarsest lattice whose interpolation stays within the budget.
+/// The coarsest lattice whose interpolation stays within the budget, or the one of a given oversampling.
 ///
 /// # Errors
-/// [`Error::Plan`] where it would have more than [`MOST_NODES`] along an axis.
-pub(super) fn coarsest(plan: &Plan, frame: Frame, budget: f64) -> Result<Lattice> {
+/// [`Error::Plan`] where it would have more than [`MOST_NODES`] along an axis, or where the oversampling is too little
+/// for a spline.
+pub(super) fn coarsest(plan: &Plan, frame: Frame, oversampling: Option<f64>, budget: f64) -> Result<Lattice> {
+    if let Some(nodes) = oversampling.filter(|nodes| !(SPARSEST..=f64::MAX).contains(nodes)) {
+        return Err(Error::Plan(format!("{nodes} nodes a half wave are fewer than {SPARSEST}")));
+    }
     let (low, high) = frame.bounds();
     let extent = high - low;
     let marginals = marginals(plan);
     // The other axis adds about as much, and their product a little.
     let part = 0.49 * budget;
-    let (step_x, over_x) = step(&marginals[0], plan.degree[0], plan.period.x, extent.x, part);
-    let (step_y, over_y) = step(&marginals[1], plan.degree[1], plan.period.y, extent.y, part);
+    let along = |axis: usize, period: f64, extent: f64| {
+        let over = oversampling.unwrap_or_else(|| least(&marginals[axis], plan.degree[axis], part));
+        step(plan.degree[axis], period, extent, over)
+    };
+    let (step_x, over_x) = along(0, plan.period.x, extent.x);
+    let (step_y, over_y) = along(1, plan.period.y, extent.y);
     let nodes = |extent: f64, step: f64| (extent / step).floor() as u32 + 4;
     let step = DVec2::new(step_x, step_y);
     let nodes = [nodes(extent.x, step_x), nodes(extent.y, step_y)];
@@ -81,17 +89,22 @@ fn marginals(plan: &Plan) -> [Marginal; 2] {
     sums.map(Marginal)
 }
 
-/// The longest step along an axis within the budget, and the nodes that it gives a half wave of the highest harmonic.
-fn step(marginal: &Marginal, degree: u32, period: f64, extent: f64, budget: f64) -> (f64, f64) {
-    if degree == 0 {
-        // A constant: any step will do.
-        return (extent.max(period), DENSEST);
-    }
+/// The fewest nodes a half wave of the highest harmonic along an axis within the budget.
+fn least(marginal: &Marginal, degree: u32, budget: f64) -> f64 {
     let (mut low, mut high) = (SPARSEST, DENSEST);
     for _ in 0..30 {
         let middle = 0.5 * (low + high);
-        let theta = PI / (middle * f64::from(degree));
+        let theta = PI / (middle * f64::from(degree.max(1)));
         if marginal.error(theta) > budget { low = middle } else { high = middle }
     }
-    (period / (2.0 * high * f64::from(degree)), high)
+    high
+}
+
+/// The step from node to node for so many nodes a half wave of the highest harmonic, and these.
+fn step(degree: u32, period: f64, extent: f64, oversampling: f64) -> (f64, f64) {
+    match degree {
+        // A constant: any step will do.
+        0 => (extent.max(period), DENSEST),
+        _ => (period / (2.0 * oversampling * f64::from(degree)), oversampling),
+    }
 }

@@ -9,6 +9,8 @@ mod decay;
 mod lattice;
 mod period;
 mod rounding;
+mod search;
+mod slots;
 mod terms;
 mod weigh;
 
@@ -18,8 +20,9 @@ use crate::frame::Frame;
 use crate::scene::Ghost;
 use crate::{Error, Result};
 
-pub use cost::Cost;
+pub use cost::{Cost, CostModel, GRID_PASSES};
 pub use lattice::{Lattice, MOST_NODES};
+pub use search::{LOOSEST, plan_at_least, plan_within};
 pub use terms::Group;
 
 use period::Reach;
@@ -71,10 +74,14 @@ pub struct Request {
     pub degree: Option<[u32; 2]>,
     /// The evaluator, where it is not to be planned.
     pub evaluator: Option<Evaluator>,
+    /// Nodes of `grid`'s lattice a half wave of the highest harmonic, 1.02 or more, where they are not to be planned.
+    pub oversampling: Option<f64>,
     /// The most terms that the device can hold.
     pub most_terms: usize,
     /// Rounds that the renderer runs a shader's loops for one pixel.
     pub loop_rounds: usize,
+    /// What each kind of work costs.
+    pub cost_model: CostModel,
 }
 
 impl Request {
@@ -86,8 +93,10 @@ impl Request {
             period: None,
             degree: None,
             evaluator: None,
+            oversampling: None,
             most_terms: 2 << 20,
             loop_rounds: usize::MAX,
+            cost_model: CostModel::default(),
         }
     }
 }
@@ -95,6 +104,8 @@ impl Request {
 /// What was decided.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Plan {
+    /// The tolerance that it was made for.
+    pub tolerance: f64,
     /// How the field is computed.
     pub evaluator: Evaluator,
     /// The period in x and y.
@@ -120,8 +131,10 @@ pub struct Plan {
     pub dropped: usize,
     /// The error that the plan expects at most.
     pub predicted: Prediction,
-    /// The cost that the plan expects, and that of the evaluators it decided against.
+    /// The cost that the plan expects, and that of the evaluators it decided against, the cheapest first.
     pub costs: Vec<Cost>,
+    /// The evaluators that could not be had, and why.
+    pub refused: Vec<Refusal>,
 }
 
 impl Plan {
@@ -129,6 +142,20 @@ impl Plan {
     pub fn ghosts(&self) -> usize {
         self.groups.iter().map(|group| group.members.len()).sum()
     }
+
+    /// What it is expected to cost, in milliseconds.
+    pub fn cost(&self) -> Option<f64> {
+        self.costs.first().map(|cost| cost.milliseconds)
+    }
+}
+
+/// An evaluator that a plan could not choose.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Refusal {
+    /// The evaluator.
+    pub evaluator: Evaluator,
+    /// Why, in words.
+    pub reason: String,
 }
 
 /// Upper bounds of the error, by source; relative to the field's largest value, like the tolerance.
@@ -193,19 +220,25 @@ pub fn plan(ghosts: &[Ghost], asked: &Request) -> Result<Plan> {
             // In the period that periodic bells bring with them the copies of others may land on the picture.
             Ok(plan) if !series && plan.predicted.total() > request.tolerance => {
                 let total = plan.predicted.total();
-                refusals
-                    .push(Error::Plan(format!("{evaluator} would be off by {total:.1e} in the period of the bells")));
+                let reason = format!("{evaluator} would be off by {total:.1e} in the period of the bells");
+                refusals.push((evaluator, Error::Plan(reason)));
             }
             Ok(plan) => candidates.push(plan),
-            Err(error) => refusals.push(error),
+            Err(error) => refusals.push((evaluator, error)),
         }
     }
     let mut costs: Vec<Cost> = candidates.iter().flat_map(|plan: &Plan| plan.costs.clone()).collect();
     costs.sort_by(|a, b| a.milliseconds.total_cmp(&b.milliseconds));
     let cheapest = candidates.into_iter().min_by(|a, b| a.costs[0].milliseconds.total_cmp(&b.costs[0].milliseconds));
     match cheapest {
-        Some(plan) => Ok(Plan { costs, ..plan }),
-        None => Err(most_helpful(ghosts, &survey, request, &wanted, refusals)),
+        Some(plan) => {
+            let told = |(evaluator, error): (Evaluator, Error)| Refusal { evaluator, reason: error.to_string() };
+            Ok(Plan { costs, refused: refusals.into_iter().map(told).collect(), ..plan })
+        }
+        None => {
+            let refusals = refusals.into_iter().map(|(_, error)| error).collect();
+            Err(most_helpful(ghosts, &survey, request, &wanted, refusals))
+        }
     }
 }
 
@@ -292,12 +325,14 @@ fn candidate(ghosts: &[Ghost], survey: &Survey, request: &Request, evaluator: Ev
 fn with_rounding(rounding: f64, survey: &Survey, request: &Request, evaluator: Evaluator) -> Result<Plan> {
     let weighed = &survey.weighed;
     // With the whole of the series given, there is nothing left to plan: the error is predicted as it comes.
-    let given = request.period.is_some() && request.degree.is_some() && evaluator != Evaluator::Grid;
+    let between = evaluator != Evaluator::Grid || request.oversampling.is_some();
+    let given = request.period.is_some() && request.degree.is_some() && between;
     let usable = request.tolerance - rounding;
     if usable < 0.25 * request.tolerance && !given {
         return Err(Error::ToleranceBelowFloor { asked: request.tolerance, floor: rounding / 0.75 });
     }
     let mut plan = Plan {
+        tolerance: request.tolerance,
         evaluator,
         period: DVec2::ONE,
         degree: [0; 2],
@@ -310,6 +345,7 @@ fn with_rounding(rounding: f64, survey: &Survey, request: &Request, evaluator: E
         dropped: weighed.dropped,
         predicted: Prediction { dropped: weighed.dropped_error, rounding, ..Prediction::default() },
         costs: Vec::new(),
+        refused: Vec::new(),
     };
     if evaluator != Evaluator::Direct {
         plan_series(&mut plan, &survey.reaches, request, usable)?;
@@ -360,7 +396,7 @@ fn plan_series(plan: &mut Plan, reaches: &[Reach], request: &Request, usable: f6
 /// The plan with terms and a lattice, each within its part of the tolerance.
 fn with_lattice(mut plan: Plan, request: &Request, truncation: f64, interpolation: f64) -> Result<Plan> {
     plan_terms(&mut plan, request, truncation)?;
-    let lattice = lattice::coarsest(&plan, request.frame, interpolation)?;
+    let lattice = lattice::coarsest(&plan, request.frame, request.oversampling, interpolation)?;
     plan.predicted.interpolation = lattice.error;
     plan.lattice = Some(lattice);
     Ok(plan)

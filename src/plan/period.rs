@@ -1,17 +1,15 @@
 //! The shortest period whose wrapped copies stay away from the picture.
 
-use std::collections::HashMap;
-use std::collections::hash_map::Entry;
-
 use glam::DVec2;
-use rayon::prelude::*;
 
+use super::slots::{Slots, by_chunks};
 use super::weigh::Weighed;
 use crate::frame::Frame;
 use crate::scene::Ghost;
 use crate::series::{Bell, Modes, Shape};
 
 /// Ghosts of about one size and one distance, as the bounds see them: the worst of each.
+#[derive(Clone)]
 pub(super) struct Reach {
     bell: Bell,
     size: DVec2,
@@ -61,46 +59,22 @@ impl Reach {
 /// Gathers the ghosts into some hundreds of reaches, so that trying a period costs the same for any number of them.
 pub(super) fn reaches(ghosts: &[Ghost], weighed: &Weighed, frame: Frame) -> Vec<Reach> {
     let bounds = <[DVec2; 2]>::from(frame.bounds());
-    // The same chunks on any machine, joined in their order: the plan must not depend on how many cores there are.
-    let chunks = ghosts.par_chunks(CHUNK).zip(weighed.weights.par_chunks(CHUNK)).map(|(ghosts, weights)| {
-        let mut bins = Bins::default();
-        for (ghost, &weight) in ghosts.iter().zip(weights).filter(|(_, weight)| **weight > 0.0) {
-            bins.add(Reach::new(ghost, weight, bounds));
-        }
-        bins.reaches
+    let chunks = by_chunks(ghosts, &weighed.weights, |ghosts| {
+        joined(ghosts.map(|(_, ghost, weight)| (&ghost.bell, Reach::new(ghost, weight, bounds))))
     });
-    let mut bins = Bins::default();
-    for reach in chunks.collect::<Vec<_>>().into_iter().flatten() {
-        bins.add(reach);
-    }
-    bins.reaches
+    joined(chunks.iter().flatten().map(|reach| (&reach.bell, reach.clone())))
 }
 
-/// Ghosts that one task gathers.
-const CHUNK: usize = 4096;
-
-/// Reaches, one for each bell and bin, in the order in which they first came.
-#[derive(Default)]
-struct Bins {
-    bells: Vec<Bell>,
-    places: HashMap<(usize, [u16; 6]), usize>,
-    reaches: Vec<Reach>,
-}
-
-impl Bins {
-    fn add(&mut self, reach: Reach) {
-        let bell = self.bells.iter().position(|bell| *bell == reach.bell).unwrap_or_else(|| {
-            self.bells.push(reach.bell.clone());
-            self.bells.len() - 1
-        });
-        match self.places.entry((bell, reach.bin())) {
-            Entry::Occupied(place) => self.reaches[*place.get()].join(&reach),
-            Entry::Vacant(place) => {
-                place.insert(self.reaches.len());
-                self.reaches.push(reach);
-            }
+/// The reaches of each bell and bin joined.
+fn joined<'a>(all: impl Iterator<Item = (&'a Bell, Reach)>) -> Vec<Reach> {
+    let (mut slots, mut reaches) = (Slots::new(), Vec::<Reach>::new());
+    for (bell, reach) in all {
+        match reaches.get_mut(slots.slot(bell, reach.bin())) {
+            Some(joined) => joined.join(&reach),
+            None => reaches.push(reach),
         }
     }
+    reaches
 }
 
 /// The shortest period along each axis that leaves at most half of the budget to its copies.

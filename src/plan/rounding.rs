@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::Evaluator;
+use super::slots::by_chunks;
 use super::weigh::Weighed;
 use crate::scene::Ghost;
 
@@ -33,9 +34,10 @@ pub(super) fn bound(ghosts: &[Ghost], weighed: &Weighed, evaluator: Evaluator, d
         let growth = 1.0 + f64::from(degree.saturating_sub(SEEN_DEGREE)) / PER_DEGREE;
         return per_weight(evaluator) * growth * weighed.weights.iter().sum::<f64>().max(1.0);
     }
-    let kept = ghosts.iter().zip(&weighed.nearest).zip(&weighed.weights).filter(|(_, weight)| **weight > 0.0);
-    let sum: f64 = kept.map(|((ghost, &nearest), weight)| weight * direct(ghost, nearest.abs())).sum();
-    sum.max(per_weight(evaluator))
+    let sums = by_chunks(ghosts, &weighed.weights, |ghosts| -> f64 {
+        ghosts.map(|(index, ghost, weight)| weight * direct(ghost, weighed.nearest[index as usize].abs())).sum()
+    });
+    sums.iter().sum::<f64>().max(per_weight(evaluator))
 }
 
 /// What one bell of peak 1 is off by in the direct sum, at most: unlike a series, it is as small as the bell itself at

@@ -1,10 +1,9 @@
 //! Which terms of the series each group of ghosts needs.
 
-use std::collections::HashMap;
-
 use glam::DVec2;
 
 use super::decay::Decay;
+use super::slots::{Slots, by_chunks};
 use super::weigh::Weighed;
 use crate::Result;
 use crate::scene::Ghost;
@@ -31,36 +30,52 @@ pub struct Group {
 /// Groups the ghosts that are not dropped: sizes within half an octave share a group, or equal sizes where the bell's
 /// coefficients come from a table.
 pub(super) fn group(ghosts: &[Ghost], weighed: &Weighed) -> Vec<Group> {
-    let mut bells: Vec<&Bell> = Vec::new();
-    let mut places: HashMap<(usize, [i64; 2]), usize> = HashMap::new();
-    let mut groups: Vec<Group> = Vec::new();
-    for ((index, ghost), &weight) in (0..).zip(ghosts).zip(&weighed.weights).filter(|(_, weight)| **weight > 0.0) {
-        let bell = bells.iter().position(|&bell| *bell == ghost.bell).unwrap_or_else(|| {
-            bells.push(&ghost.bell);
-            bells.len() - 1
-        });
-        let size = match ghost.bell.shape().tabulated() {
-            true => [ghost.size.x, ghost.size.y].map(|size| size.to_bits() as i64),
-            false => [ghost.size.x, ghost.size.y].map(half_octave),
-        };
-        let place = *places.entry((bell, size)).or_insert_with(|| {
-            groups.push(Group {
-                bell: ghost.bell.clone(),
-                members: Vec::new(),
-                ghosts: 0,
-                smallest: ghost.size,
-                weight: 0.0,
-                degree: [0; 2],
-            });
-            groups.len() - 1
-        });
-        let group = &mut groups[place];
-        group.members.push(index);
-        group.ghosts += 1;
-        group.smallest = group.smallest.min(ghost.size);
-        group.weight += weight;
+    let chunks = by_chunks(ghosts, &weighed.weights, |ghosts| {
+        let (mut slots, mut groups) = (Slots::new(), Vec::new());
+        for (index, ghost, weight) in ghosts {
+            let slot = slots.slot(&ghost.bell, key(&ghost.bell, ghost.size));
+            if slot == groups.len() {
+                groups.push(Group::new(&ghost.bell, ghost.size));
+            }
+            groups[slot].add(index, ghost.size, weight);
+        }
+        groups
+    });
+    let (mut slots, mut groups) = (Slots::new(), Vec::<Group>::new());
+    for group in chunks.iter().flatten() {
+        let slot = slots.slot(&group.bell, key(&group.bell, group.smallest));
+        match groups.get_mut(slot) {
+            Some(joined) => joined.join(group),
+            None => groups.push(group.clone()),
+        }
     }
     groups
+}
+
+impl Group {
+    fn new(bell: &Bell, size: DVec2) -> Self {
+        Self { bell: bell.clone(), members: Vec::new(), ghosts: 0, smallest: size, weight: 0.0, degree: [0; 2] }
+    }
+
+    fn add(&mut self, index: u32, size: DVec2, weight: f64) {
+        self.members.push(index);
+        self.ghosts += 1;
+        self.smallest = self.smallest.min(size);
+        self.weight += weight;
+    }
+
+    fn join(&mut self, other: &Self) {
+        self.members.extend(&other.members);
+        self.ghosts += other.ghosts;
+        self.smallest = self.smallest.min(other.smallest);
+        self.weight += other.weight;
+    }
+}
+
+/// What the ghosts of a group have in common.
+fn key(bell: &Bell, size: DVec2) -> [i64; 2] {
+    let key = if bell.shape().tabulated() { |size: f64| size.to_bits() as i64 } else { half_octave };
+    [key(size.x), key(size.y)]
 }
 
 /// ⌊2 log2 x⌋ for a positive normal number, by its exponent.

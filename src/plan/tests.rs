@@ -100,31 +100,25 @@ fn the_direct_sum_knows_how_far_f32_shifts_a_small_bell() {
 }
 
 #[test]
-#[ignore = "timing"]
-fn timing() {
-    for count in [1000usize, 100_000] {
-        let part = |k: usize, irrational: f64| (0.5 + k as f64 * irrational).fract();
-        let ghosts: Vec<Ghost> = (0..count)
-            .map(|k| {
-                ghost(
-                    [3.6 * part(k, 0.754_877_666) - 1.8, 2.0 * part(k, 0.569_840_291) - 1.0],
-                    [0.1 + 0.2 * part(k, 0.618_033_989); 2],
-                )
-            })
-            .collect();
-        for _ in 0..3 {
-            let request = Request::new(Frame::full(1920, 1080), 1e-2);
-            let t = std::time::Instant::now();
-            let s = Survey::new(&ghosts, &request);
-            let a = t.elapsed();
-            let plan = plan(&ghosts, &request);
-            println!(
-                "{count}: survey {a:?} ({} reaches, {} groups) plan {:?} {:?}",
-                s.reaches.len(),
-                s.groups.len(),
-                t.elapsed() - a,
-                plan.map(|p| p.evaluator)
-            );
-        }
+fn a_given_oversampling_is_taken_and_its_bound_falls_with_the_fourth_power() {
+    let ghosts = [ghost([0.1, 0.0], [0.3, 0.2])];
+    let of = |nodes: f64| {
+        let request = Request {
+            evaluator: Some(Evaluator::Grid),
+            period: Some(DVec2::new(6.0, 5.0)),
+            degree: Some([24, 30]),
+            oversampling: Some(nodes),
+            ..Request::new(Frame::full(160, 90), 1e-3)
+        };
+        plan(&ghosts, &request)
+    };
+    let [coarse, fine] = [4.0, 8.0].map(|nodes| of(nodes).unwrap());
+    assert_eq!(coarse.lattice.unwrap().oversampling, DVec2::splat(4.0));
+    assert_eq!(fine.lattice.unwrap().step * 2.0, coarse.lattice.unwrap().step);
+    let ratio = coarse.predicted.interpolation / fine.predicted.interpolation;
+    assert!((14.0..18.0).contains(&ratio), "{ratio}");
+    // A spline needs more than one node a half wave; a lattice can be too large.
+    for nodes in [0.0, 1.0, -2.0, f64::NAN, f64::INFINITY, 1000.0] {
+        assert!(matches!(of(nodes), Err(Error::Plan(_))), "{nodes}");
     }
 }

@@ -8,7 +8,7 @@ use crate::frame::Frame;
 use crate::scene::Ghost;
 
 /// Evaluations of a bell that finding the scale may cost.
-const EFFORT: usize = 600_000;
+const EFFORT: usize = 400_000;
 /// Probes: at the pixels next to the ghosts that alone shine strongest, and on an even grid over the picture.
 const STRONGEST: usize = 48;
 const GRID: u32 = 6;
@@ -37,12 +37,12 @@ pub(super) struct Weighed {
 pub(super) fn weigh(ghosts: &[Ghost], request: &Request) -> Weighed {
     let frame = request.frame;
     let nearest: Vec<DVec2> = ghosts.par_iter().map(|ghost| nearest_offset(ghost, frame)).collect();
-    let peaks = probes(ghosts, &nearest, frame);
+    let shares: Vec<f64> = ghosts.par_iter().zip(&nearest).map(|(ghost, &offset)| reached(ghost, offset)).collect();
+    let peaks = probes(ghosts, &shares, frame);
     let points: Vec<DVec2> = peaks.iter().map(|&[i, j]| frame.position(f64::from(i), f64::from(j))).collect();
     let scale = scale(ghosts, &nearest, &points, request.tolerance);
     let mut weights: Vec<f64> = ghosts.par_iter().map(|ghost| peak_weight(ghost, scale)).collect();
-    let reached: Vec<f64> =
-        ghosts.par_iter().zip(&nearest).zip(&weights).map(|((ghost, &offset), w)| w * reached(ghost, offset)).collect();
+    let reached: Vec<f64> = shares.iter().zip(&weights).map(|(share, weight)| weight * share).collect();
     let (dropped, dropped_error) = drop_faint(&mut weights, &reached, share::DROPPED * request.tolerance);
     Weighed { scale, peaks, weights, nearest, dropped, dropped_error }
 }
@@ -116,7 +116,7 @@ fn nearest_offset(ghost: &Ghost, frame: Frame) -> DVec2 {
 }
 
 /// Pixels at which the field may be largest.
-fn probes(ghosts: &[Ghost], nearest: &[DVec2], frame: Frame) -> Vec<[i32; 2]> {
+fn probes(ghosts: &[Ghost], shares: &[f64], frame: Frame) -> Vec<[i32; 2]> {
     let window = frame.window;
     let inside = |p: DVec2| {
         let last = [window.x + window.width as i32 - 1, window.y + window.height as i32 - 1];
@@ -125,11 +125,11 @@ fn probes(ghosts: &[Ghost], nearest: &[DVec2], frame: Frame) -> Vec<[i32; 2]> {
     let most = (EFFORT / ghosts.len().max(1)).clamp(4, STRONGEST + (GRID * GRID) as usize);
     let mut alone: Vec<(f64, usize)> = ghosts
         .par_iter()
-        .zip(nearest)
+        .zip(shares)
         .enumerate()
-        .map(|(k, (ghost, &offset))| {
+        .map(|(k, (ghost, share))| {
             let radiance = ghost.radiance.iter().fold(0.0f64, |a, b| a.max(b.abs()));
-            (radiance * reached(ghost, offset), k)
+            (radiance * share, k)
         })
         .collect();
     let strongest = alone.len().min(most.div_ceil(2).min(STRONGEST));
@@ -157,8 +157,8 @@ fn probes(ghosts: &[Ghost], nearest: &[DVec2], frame: Frame) -> Vec<[i32; 2]> {
 /// Ghosts are told apart by powers of two only, so that no sorting is needed.
 fn drop_faint(weights: &mut [f64], reached: &[f64], budget: f64) -> (usize, f64) {
     const LOWEST: i32 = -200;
-    let bin =
-        |value: f64| if value > 0.0 { value.log2().floor().clamp(f64::from(LOWEST), 55.0) as i32 } else { LOWEST };
+    // The exponent of a normal number is the power of two below it.
+    let bin = |value: f64| ((value.to_bits() >> 52) as i32 - 1023).clamp(LOWEST, 55);
     let mut sums = [0.0f64; 256];
     for &value in reached {
         sums[(bin(value) - LOWEST) as usize] += value;

@@ -9,7 +9,7 @@ use super::chart::{Along, Chart, Series, Stroke};
 use super::plane::{Canvas, Scene};
 use super::{Figure, Lab, Numbers, Report, Table};
 use crate::Result;
-use crate::measure::{Ratio, Rounds, Samples};
+use crate::measure::{Ratio, Rounds, Samples, crossover};
 use crate::plan::Evaluator;
 use crate::series::Bell;
 
@@ -240,29 +240,9 @@ fn sweep(report: &mut Report, stage: &Stage, args: &Args) -> Result<()> {
     Ok(())
 }
 
-/// Where direct over series, by the number of ghosts, rises through 1 for the last time; straight between its points on
-/// logarithmic scales.
-fn crossover(ratios: &[[f64; 2]]) -> Option<f64> {
-    let rises = |pair: &&[[f64; 2]]| pair[0][1] < 1.0 && pair[1][1] >= 1.0;
-    ratios.windows(2).rfind(rises).map(|pair| {
-        let [[from, below], [to, above]] = [pair[0], pair[1]].map(|point| point.map(f64::ln));
-        (from + (to - from) * below / (below - above)).exp()
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_crossover_lies_where_the_ratio_is_one() {
-        // A direct sum of 0.02 K milliseconds against 1 millisecond.
-        let ratios: Vec<_> =
-            counts(1024).into_iter().map(|count| [f64::from(count), 0.02 * f64::from(count)]).collect();
-        assert!((crossover(&ratios).unwrap() - 50.0).abs() < 1e-9);
-        assert_eq!(crossover(&ratios[..5]), None);
-        assert_eq!(crossover(&ratios[7..]), None);
-    }
 
     #[test]
     fn the_sweep_ends_where_it_is_asked_to() {

@@ -1,18 +1,13 @@
 //! Reports as files in a folder, and the page that shows them.
 
-use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-use image::{ImageFormat, RgbImage};
-use serde::Serialize;
-
 use super::page::{self, Files};
-use super::report::{Field, Figure, Numbers, Report, Table};
+use super::report::{Field, Figure, Report, Table};
 use crate::gpu::Info;
+use crate::page::{INDEX, csv_text, numbers_csv, open, write_png};
 use crate::photo::{self, Photo, WriteOptions};
 use crate::{Error, Result, target};
-
-const INDEX: &str = "index.html";
 
 /// A folder with reports: a page, `index.html`, and a folder of files for each report.
 pub struct Book {
@@ -27,14 +22,7 @@ impl Book {
     /// [`Error::Occupied`] where the folder holds anything but a former book and `force` is not given;
     /// [`Error::Write`] where it cannot be made or written to.
     pub fn create(folder: &Path, force: bool) -> Result<Self> {
-        let refused = |error: std::io::Error| Error::write(folder, error);
-        if folder.exists() {
-            let empty = std::fs::read_dir(folder).map_err(refused)?.next().is_none();
-            if !empty && !force && !is_book(folder) {
-                return Err(Error::Occupied { path: folder.to_owned() });
-            }
-        }
-        std::fs::create_dir_all(folder).map_err(refused)?;
+        open(folder, page::GENERATOR, force)?;
         let book = Self { folder: folder.to_owned(), chapters: Vec::new() };
         // From now on the folder is known as a book, even if the first experiment fails.
         book.write_index(None)?;
@@ -72,11 +60,6 @@ impl Book {
     }
 }
 
-/// Whether the folder's page is one that this program wrote.
-fn is_book(folder: &Path) -> bool {
-    std::fs::read_to_string(folder.join(INDEX)).is_ok_and(|text| text.contains(page::GENERATOR))
-}
-
 /// Writes what a figure has, and returns the names of the files, the picture first.
 fn write_figure(folder: &Path, figure: &Figure) -> Result<Vec<String>> {
     let mut names = Vec::new();
@@ -98,12 +81,6 @@ fn write_figure(folder: &Path, figure: &Figure) -> Result<Vec<String>> {
     Ok(names)
 }
 
-fn write_png(path: &Path, picture: &RgbImage) -> Result<()> {
-    let mut png = Cursor::new(Vec::new());
-    picture.write_to(&mut png, ImageFormat::Png).map_err(|error| Error::write(path, error))?;
-    target::write(path, png.get_ref(), true)
-}
-
 fn write_exr(path: &Path, field: &Field) -> Result<()> {
     if field.pixels.len() != field.width as usize * field.height as usize {
         return Err(Error::write(path, "the field has not as many pixels as its sides say"));
@@ -112,34 +89,6 @@ fn write_exr(path: &Path, field: &Field) -> Result<()> {
     photo::write(path, &photo, &WriteOptions { overwrite: true, ..WriteOptions::default() })
 }
 
-type Reason = Box<dyn std::error::Error>;
-
-fn numbers_csv(numbers: &Numbers) -> Result<String, Reason> {
-    let rows = numbers.rows.iter().map(|row| row.iter().map(|&value| (!value.is_nan()).then_some(value)));
-    csv_text(&numbers.columns, rows.map(Iterator::collect::<Vec<_>>))
-}
-
-fn table_csv(table: &Table) -> Result<String, Reason> {
+fn table_csv(table: &Table) -> Result<String, Box<dyn std::error::Error>> {
     csv_text(&table.header, table.rows.iter())
-}
-
-fn csv_text<R: Serialize>(header: &[String], rows: impl Iterator<Item = R>) -> Result<String, Reason> {
-    let mut csv = csv::Writer::from_writer(Vec::new());
-    csv.write_record(header)?;
-    for row in rows {
-        csv.serialize(row)?;
-    }
-    Ok(String::from_utf8(csv.into_inner()?)?)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_become_csv_with_empty_cells_for_what_is_missing() {
-        let columns = ["x", "y, squared"].map(String::from).to_vec();
-        let numbers = Numbers { columns, rows: vec![vec![0.1, 1e-20], vec![0.2, f64::NAN]] };
-        assert_eq!(numbers_csv(&numbers).unwrap(), "x,\"y, squared\"\n0.1,1e-20\n0.2,\n");
-    }
 }

@@ -9,13 +9,12 @@
 
 mod benchmark;
 mod book;
-mod chance;
-pub mod chart;
 mod cosine_2d;
 mod fourier_1d;
 mod fourier_1d_gpu;
 mod gaussian_2d;
 mod lab;
+mod lookup;
 mod normalize;
 mod page;
 mod parabola_1d;
@@ -24,6 +23,8 @@ mod paraboloid_bessel;
 mod plane;
 mod report;
 
+use crate::chance;
+pub use crate::chart;
 pub use book::Book;
 pub use lab::Lab;
 pub use report::{Field, Figure, Numbers, Report, Table};
@@ -75,6 +76,7 @@ experiments! {
     "gaussian-2d" => Gaussian2d(gaussian_2d),
     "normalize" => Normalize(normalize),
     "benchmark" => Benchmark(benchmark),
+    "lookup" => Lookup(lookup),
 }
 
 impl Experiment {
@@ -90,8 +92,9 @@ impl Experiment {
         let one = |command: &Command| {
             let knows = command.get_arguments().any(|argument| argument.get_long() == Some("as-printed"));
             let flag = (as_printed && knows).then_some("--as-printed");
-            let matches = commands.clone().get_matches_from([command.get_name()].into_iter().chain(flag));
-            Self::from_arg_matches(&matches).expect("every parameter has a default")
+            let arguments = [command.get_name()].into_iter().chain(flag);
+            let matches = commands.clone().try_get_matches_from(arguments);
+            matches.and_then(|matches| Self::from_arg_matches(&matches)).expect("every parameter has a default")
         };
         commands.get_subcommands().map(one).collect()
     }

@@ -4,28 +4,10 @@ use std::fmt::Write as _;
 
 use super::report::{Figure, Report, Table};
 use crate::gpu::Info;
+use crate::page::{cell, drawn_on, escaped, head, pairs};
 
 /// What tells a page of this program's from others.
 pub(super) const GENERATOR: &str = r#"<meta name="generator" content="vglare rex">"#;
-
-const STYLE: &str = "
-:root { color-scheme: light dark; --ink: #1d2127; --soft: #5b6470; --line: #d9dde3; --ground: #fff; --card: #f6f7f9 }
-@media (prefers-color-scheme: dark) {
-  :root { --ink: #e6e8eb; --soft: #9aa4b1; --line: #363c45; --ground: #14171b; --card: #1c2026 } }
-body { font: 17px/1.55 system-ui, sans-serif; color: var(--ink); background: var(--ground);
-  max-width: 62rem; margin: 0 auto; padding: 2rem 1.2rem 4rem }
-h1 { font-size: 1.7rem; margin: 0 0 .3rem } h2 { font-size: 1.4rem; margin: 3.5rem 0 .5rem }
-p { max-width: 46rem } a { color: inherit } code { font-size: .9em }
-.soft, figcaption, caption { color: var(--soft); font-size: .93rem }
-figure { margin: 1.8rem 0 } figcaption { margin-top: .5rem; max-width: 56rem }
-img { max-width: 100%; height: auto; background: #fff; border: 1px solid var(--line); border-radius: 6px }
-.wide { overflow-x: auto } table { border-collapse: collapse; margin: .8rem 0; font-size: .95rem }
-caption { text-align: left; padding-bottom: .4rem }
-th, td { text-align: left; padding: .25rem 1.1rem .25rem 0; border-bottom: 1px solid var(--line); vertical-align: top }
-td.number { text-align: right; font-variant-numeric: tabular-nums }
-details { background: var(--card); border-radius: 6px; padding: .5rem .9rem; margin: .8rem 0 }
-nav ol { padding-left: 1.2rem } footer { margin-top: 4rem; border-top: 1px solid var(--line); padding-top: .8rem }
-";
 
 /// The names of the files that a report became, in its own order.
 #[derive(Debug, Default)]
@@ -67,13 +49,11 @@ impl Chapter {
 
 /// The whole page.
 pub(super) fn page(chapters: &[Chapter], device: Option<&Info>) -> String {
-    let mut text = String::from("<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n");
-    let _ = writeln!(text, "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n{GENERATOR}");
     let title = match chapters {
         [only] => only.title.as_str(),
         _ => "The prototype’s experiments",
     };
-    let _ = writeln!(text, "<title>{}</title>\n<style>{STYLE}</style>", escaped(title));
+    let mut text = head(title, GENERATOR);
     let version = env!("CARGO_PKG_VERSION");
     let _ = writeln!(text, "<h1>Veiling glare: the prototype’s experiments</h1>");
     let _ = writeln!(text, "<p class=\"soft\">Computed and drawn by <code>vglare rex</code>, version {version}.</p>");
@@ -91,23 +71,11 @@ pub(super) fn page(chapters: &[Chapter], device: Option<&Info>) -> String {
         let _ = writeln!(text, "<section id=\"{name}\">\n<h2>{}</h2>", escaped(title));
         let _ = writeln!(text, "<p class=\"soft\"><code>vglare rex {name}</code></p>\n{body}</section>");
     }
-    if let Some(Info { renderer, version, backend, route, .. }) = device {
-        let gl = format!("{renderer}, OpenGL {version} through {backend} ({route})");
-        let _ = writeln!(text, "<footer class=\"soft\">Drawn on {}.</footer>", escaped(&gl));
+    if let Some(info) = device {
+        text.push_str(&drawn_on(info));
     }
     text.push_str("</html>\n");
     text
-}
-
-fn pairs(caption: &str, pairs: &[(String, String)]) -> String {
-    let mut text = String::from("<div class=\"wide\"><table>\n");
-    if !caption.is_empty() {
-        let _ = writeln!(text, "<caption>{}</caption>", escaped(caption));
-    }
-    for (name, value) in pairs {
-        let _ = writeln!(text, "<tr><th scope=\"row\">{}</th>{}</tr>", escaped(name), cell(value));
-    }
-    text + "</table></div>\n"
 }
 
 fn shown_figure(folder: &str, figure: &Figure, files: &[String]) -> String {
@@ -135,20 +103,10 @@ fn shown_table(folder: &str, table: &Table, file: &str) -> String {
     text + "</table></div>\n"
 }
 
-/// A cell; numbers stand at the right.
-fn cell(value: &str) -> String {
-    let number = value.parse::<f64>().is_ok();
-    format!("<td{}>{}</td>", if number { " class=\"number\"" } else { "" }, escaped(value))
-}
-
 /// A link that goes by the file's kind.
 fn link(folder: &str, file: &str) -> String {
     let kind = file.rsplit('.').next().unwrap_or(file).to_uppercase();
     format!("<a href=\"{folder}/{file}\">{kind}</a>")
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 #[cfg(test)]

@@ -4,6 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use super::chart::{Chart, Series, Stroke};
 use super::{Figure, Lab, Report, Table};
+use crate::series::printed::parabola_kernel_f32;
+use crate::series::special::parabola_kernel;
 use crate::{Error, Result};
 
 /// The general parabola A² − B²(x − t)² as a Fourier series
@@ -120,7 +122,8 @@ impl Parabola {
 
     /// α_n.
     fn coefficient(&self, n: u32) -> f64 {
-        4.0 * self.peak() * self.half / (3.0 * self.period) * phi(TAU * f64::from(n) / self.period * self.half)
+        4.0 * self.peak() * self.half / (3.0 * self.period)
+            * parabola_kernel(TAU * f64::from(n) / self.period * self.half)
     }
 
     /// α_n by the notes' formula (001) in f32, as the prototype's `float`s compute it: a_n and b_n are 2 α_n times cos
@@ -144,20 +147,12 @@ impl Parabola {
         coefficients[0] + (1..=degree).rev().map(term).sum::<f64>()
     }
 
-    /// The bound on the error of degree N: A² times (2T/(π²hN)) (1 + T/(4πhN)) (docs/math.md, section 4.1).
+    /// The bound on the error of degree N: A² times (2T/(π²hN)) (1 + T/(4πhN)) (docs/math.md,
+    /// "The parabola of the notes").
     fn bound(&self, degree: u32) -> f64 {
         let ratio = self.period / (self.half * f64::from(degree));
         self.peak() * 2.0 * ratio / (PI * PI) * (1.0 + ratio / (4.0 * PI))
     }
-}
-
-/// Φ(z) = 3 (sin z − z cos z)/z³ without cancellation (docs/math.md, section 3.1).
-fn phi(z: f64) -> f64 {
-    if z.abs() >= 0.7 {
-        return 3.0 * (z.sin() - z * z.cos()) / (z * z * z);
-    }
-    let square = z * z;
-    [238.0, 180.0, 130.0, 88.0, 54.0, 28.0, 10.0].iter().fold(1.0, |sum, divisor| 1.0 - square / divisor * sum)
 }
 
 /// Φ in f32, by the same series up to 1.5, where five factors are enough for f32.
@@ -171,12 +166,12 @@ fn phi_f32(z: f32) -> f32 {
 
 /// 3 (sin z/z³ − cos z/z²) as it is printed, in f32.
 fn printed_f32(z: f32) -> f32 {
-    3.0 * (z.sin() / (z * z * z) - z.cos() / (z * z))
+    3.0 * parabola_kernel_f32(z)
 }
 
 /// |f/Φ − 1|.
 fn relative(f: fn(f32) -> f32, z: f32) -> f64 {
-    let truth = phi(f64::from(z));
+    let truth = parabola_kernel(f64::from(z));
     ((f64::from(f(z)) - truth) / truth).abs()
 }
 

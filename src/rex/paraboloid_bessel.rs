@@ -7,7 +7,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::chart::{Axis, Chart, Map, Scalar, Series, Stroke};
-use super::{Figure, Lab, Report, Table};
+use super::{Field, Figure, Lab, Report, Table};
 use crate::frame::Frame;
 use crate::renderer::{GrafRenderer, GrafScene};
 use crate::scene::Ghost;
@@ -85,7 +85,7 @@ impl Setting {
         let bell = Paraboloid { peak: args.a, curvature: args.b };
         let spot = |x: f64| Spot { center: DVec2::new(x, args.y), weight: WEIGHT };
         let spots = [spot(args.x[0]), spot(args.x[1])];
-        // Beyond 2L − ρ from a ghost, the series shows a ring that is not there (docs/math.md, section 9).
+        // Beyond 2L − ρ from a ghost, the series shows a ring that is not there (docs/math.md, "Fourier-Bessel and Graf").
         let farthest = (spots.iter()).map(|spot| (spot.center.abs() + 1.0).length()).fold(0.0, f64::max);
         if bell.edge() > args.radius || farthest > 2.0 * args.radius - bell.edge() {
             return Err(Error::Usage(format!(
@@ -279,6 +279,8 @@ fn largest(errors: &[f64]) -> f64 {
 fn pictures(pixels: &[f32], errors: Vec<f64>, size: u32) -> Result<[Figure; 2]> {
     let side = |label: &str| Axis { label: label.into(), range: Some([-1.0, 1.0]), ..Axis::default() };
     let axes = [side("x"), side("y")];
+    let grey = pixels.iter().map(|&value| [value, value, value, 1.0]).collect();
+    let linear = Field { width: size, height: size, pixels: grey };
     let values = Scalar { width: size, height: size, values: pixels.iter().map(|&value| value.into()).collect() };
     let value = Axis { label: "field".into(), ..Axis::default() };
     let field = values.chart("Graf's form on the device", axes.clone(), value, Map::Inferno, 512);
@@ -287,7 +289,7 @@ fn pictures(pixels: &[f32], errors: Vec<f64>, size: u32) -> Result<[Figure; 2]> 
     let errors = Scalar { width: size, height: size, values: errors };
     let error = errors.chart("Its error", axes, difference, Map::RedBlue, 512);
     Ok([
-        Figure::chart("field", "The field on the device, with N = M = 100.", &field)?,
+        Figure::chart("field", "The field on the device, with N = M = 100.", &field)?.field(linear),
         Figure::chart("field-error", "What it is off by, against the bells themselves.", &error)?,
     ])
 }

@@ -127,6 +127,7 @@ impl Scene {
             degree: self.degree,
         };
         Plan {
+            tolerance: f64::INFINITY,
             evaluator,
             period: self.period * canvas.scale,
             degree: self.degree,
@@ -139,6 +140,7 @@ impl Scene {
             dropped: 0,
             predicted: Prediction::default(),
             costs: Vec::new(),
+            refused: Vec::new(),
         }
     }
 

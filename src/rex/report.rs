@@ -2,6 +2,8 @@
 
 use image::RgbImage;
 
+pub use super::chart::Numbers;
+
 use super::chart::Chart;
 use crate::Result;
 
@@ -89,14 +91,6 @@ impl Figure {
     pub fn field(self, field: Field) -> Self {
         Self { field: Some(field), ..self }
     }
-}
-
-/// Columns of numbers; NaN is written as an empty cell.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Numbers {
-    pub columns: Vec<String>,
-    /// As many numbers in each as there are columns.
-    pub rows: Vec<Vec<f64>>,
 }
 
 /// A picture in linear light, row by row from the top.

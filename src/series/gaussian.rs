@@ -22,11 +22,10 @@ pub fn windowed_gaussian(n: u32, size: f64) -> f64 {
     SQRT_TAU * size * re_erf_scaled(a, b)
 }
 
-impl Gaussian {
-    fn coefficient(n: u32, size: f64) -> f64 {
-        let turn = TAU * f64::from(n) * size;
-        SQRT_TAU * size * (-0.5 * turn * turn).exp()
-    }
+/// a_n of the periodised Gaussian, of a size in periods: √(2π) (σ/T) exp(−(nωσ)²/2).
+pub fn wrapped_gaussian(n: u32, size: f64) -> f64 {
+    let turn = TAU * f64::from(n) * size;
+    SQRT_TAU * size * (-0.5 * turn * turn).exp()
 }
 
 impl Shape for Gaussian {
@@ -77,9 +76,8 @@ impl Shape for Gaussian {
 }
 
 impl Factor for Gaussian {
-    /// a_n = √(2π) (σ/T) exp(−(nωσ)²/2).
     fn coefficients(&self, highest: u32, size: f64) -> Vec<[f64; 2]> {
-        (0..=highest).map(|n| [Self::coefficient(n, size), 0.0]).collect()
+        (0..=highest).map(|n| [wrapped_gaussian(n, size), 0.0]).collect()
     }
 
     /// The sum itself from the last coefficient that f64 can tell from nothing; for bells so narrow that this would
@@ -91,7 +89,7 @@ impl Factor for Gaussian {
             return (0..=highest).map(|n| libm::erfc(SQRT_2 * PI * f64::from(n) * size)).collect();
         }
         let last = highest + (NEGLIGIBLE / size).ceil() as u32;
-        summed(highest, last, 0.0, |n| 2.0 * Self::coefficient(n, size))
+        summed(highest, last, 0.0, |n| 2.0 * wrapped_gaussian(n, size))
     }
 
     /// As much as leaves the sum of all coefficients, which is the periodised peak, a bound for the largest size too.
@@ -100,7 +98,7 @@ impl Factor for Gaussian {
             let reach = (9.0 * size).min(1e6) as i32;
             (1..=reach).map(|j| 2.0 * self.along(f64::from(j), size)).sum()
         };
-        Self::coefficient(0, size) + (copies(SQRT_2 * size) - copies(size)).max(0.0)
+        wrapped_gaussian(0, size) + (copies(SQRT_2 * size) - copies(size)).max(0.0)
     }
 
     /// erfc(z) < exp(−z²), so z = √ln(1/ε) is enough.

@@ -30,7 +30,7 @@ mod spline;
 mod tails;
 
 pub use bell::{Bell, Factor, Modes, Radial, Shape};
-pub use gaussian::windowed_gaussian;
+pub use gaussian::{windowed_gaussian, wrapped_gaussian};
 pub use periodic::{SineGaussian, VonMises};
 pub use profile::Profile;
 pub use spline::spline_error;

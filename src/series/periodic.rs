@@ -1,6 +1,6 @@
 //! Bells that are periodic themselves, with the period of the series: they have no copies, and no meaning without it.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{PI, SQRT_2, TAU};
 
 use glam::DVec2;
 
@@ -26,18 +26,64 @@ pub struct SineGaussian {
     pub mean: f64,
 }
 
-impl VonMises {
+/// A bell that is a product of one periodic factor for each axis.
+trait Periodic: Sync {
+    const NAME: &'static str;
+    const SHADER: &'static str;
+
+    fn period(&self) -> DVec2;
+
     /// The factor at x periods from its centre, of a size in periods.
-    fn factor(x: f64, size: f64) -> f64 {
+    fn factor(&self, x: f64, size: f64) -> f64;
+
+    /// a_n and b_n of the factor for n = 0 ..= `highest`.
+    fn coefficients(&self, highest: u32, size: f64) -> Vec<[f64; 2]>;
+
+    /// What the shader needs to know beside offset, size and period.
+    fn parameter(&self) -> f64;
+}
+
+impl Periodic for VonMises {
+    const NAME: &'static str = "von-mises";
+    const SHADER: &'static str = "bells/von_mises.glsl";
+
+    fn period(&self) -> DVec2 {
+        self.period
+    }
+
+    fn factor(&self, x: f64, size: f64) -> f64 {
         // 1 − cos = 2 sin²(half), which does not cancel.
         (-2.0 * ((PI * x).sin() / (TAU * size)).powi(2)).exp()
     }
+
+    /// a_n = exp(−κ) I_n(κ).
+    fn coefficients(&self, highest: u32, size: f64) -> Vec<[f64; 2]> {
+        ive_all(highest, (TAU * size).powi(-2)).into_iter().map(|mean| [mean, 0.0]).collect()
+    }
+
+    fn parameter(&self) -> f64 {
+        0.0
+    }
 }
 
-impl SineGaussian {
-    /// The factor at x periods from its centre, of a size in periods.
+impl Periodic for SineGaussian {
+    const NAME: &'static str = "sine-gaussian";
+    const SHADER: &'static str = "bells/sine_gaussian.glsl";
+
+    fn period(&self) -> DVec2 {
+        self.period
+    }
+
     fn factor(&self, x: f64, size: f64) -> f64 {
         (-0.5 * (((TAU * x).sin() - self.mean) / (TAU * size)).powi(2)).exp()
+    }
+
+    fn coefficients(&self, highest: u32, size: f64) -> Vec<[f64; 2]> {
+        by_samples(highest, samples(highest, size), |x| self.factor(x, size))
+    }
+
+    fn parameter(&self) -> f64 {
+        self.mean
     }
 }
 
@@ -66,33 +112,18 @@ fn by_samples(highest: u32, samples: u32, function: impl Fn(f64) -> f64) -> Vec<
     (0..=highest).map(coefficient).collect()
 }
 
-/// The sum of |a_n + i b_n| beyond each harmonic, to where nothing is left.
-fn tails(factor: &dyn Factor, highest: u32, size: f64) -> Vec<f64> {
-    let last = highest + (2.0 / size).min(1e5) as u32;
-    let coefficients = factor.coefficients(last, size);
-    summed(highest, last, 0.0, |n| {
-        let [a, b] = coefficients[n as usize];
-        2.0 * a.hypot(b)
-    })
-}
-
-/// Where a Gaussian of the same size has no more than ε left.
-fn degree(error: f64, size: f64) -> f64 {
-    (1.0 / error).max(3.0).ln().sqrt() / (std::f64::consts::SQRT_2 * PI * size) + 2.0
-}
-
-impl Shape for VonMises {
+impl<B: Periodic> Shape for B {
     fn name(&self) -> &'static str {
-        "von-mises"
+        B::NAME
     }
 
     fn shader(&self) -> &'static str {
-        "bells/von_mises.glsl"
+        B::SHADER
     }
 
     fn value(&self, offset: DVec2, size: DVec2) -> f64 {
-        let (x, size) = (offset / self.period, size / self.period);
-        Self::factor(x.x, size.x) * Self::factor(x.y, size.y)
+        let (x, size) = (offset / Periodic::period(self), size / Periodic::period(self));
+        self.factor(x.x, size.x) * self.factor(x.y, size.y)
     }
 
     /// It comes back after a period.
@@ -104,14 +135,16 @@ impl Shape for VonMises {
         0.0
     }
 
+    /// As steep as a Gaussian, exp(−1/2), and a little more.
     fn steepest(&self, _distance: f64) -> f64 {
         0.61
     }
 
     fn integral(&self, size: DVec2) -> f64 {
-        let size = size / self.period;
-        let mean = |size: f64| self.coefficients(0, size)[0][0];
-        self.period.element_product() * mean(size.x) * mean(size.y)
+        let period = Periodic::period(self);
+        let size = size / period;
+        let mean = |size: f64| Periodic::coefficients(self, 0, size)[0][0];
+        period.element_product() * mean(size.x) * mean(size.y)
     }
 
     fn variance(&self) -> f64 {
@@ -123,96 +156,36 @@ impl Shape for VonMises {
     }
 
     fn period(&self) -> Option<DVec2> {
-        Some(self.period)
+        Some(Periodic::period(self))
     }
 
     fn parameters(&self) -> Vec<[f32; 4]> {
-        vec![[1.0 / self.period.x as f32, 1.0 / self.period.y as f32, 0.0, 0.0]]
+        let frequency = 1.0 / Periodic::period(self);
+        vec![[frequency.x as f32, frequency.y as f32, self.parameter() as f32, 0.0]]
     }
 }
 
-impl Factor for VonMises {
-    /// a_n = exp(−κ) I_n(κ).
+impl<B: Periodic> Factor for B {
     fn coefficients(&self, highest: u32, size: f64) -> Vec<[f64; 2]> {
-        ive_all(highest, (TAU * size).powi(-2)).into_iter().map(|mean| [mean, 0.0]).collect()
+        Periodic::coefficients(self, highest, size)
     }
 
+    /// The sum of |a_n + i b_n| to where nothing is left.
     fn tails(&self, highest: u32, size: f64) -> Vec<f64> {
-        tails(self, highest, size)
+        let last = highest + (2.0 / size).min(1e5) as u32;
+        let coefficients = Periodic::coefficients(self, last, size);
+        summed(highest, last, 0.0, |n| {
+            let [a, b] = coefficients[n as usize];
+            2.0 * a.hypot(b)
+        })
     }
 
     fn mean(&self, size: f64) -> f64 {
-        self.coefficients(0, size)[0][0]
+        Periodic::coefficients(self, 0, size)[0][0]
     }
 
+    /// Where a Gaussian of the same size has no more than ε left.
     fn degree(&self, error: f64, size: f64) -> f64 {
-        degree(error, size)
-    }
-}
-
-impl Shape for SineGaussian {
-    fn name(&self) -> &'static str {
-        "sine-gaussian"
-    }
-
-    fn shader(&self) -> &'static str {
-        "bells/sine_gaussian.glsl"
-    }
-
-    fn value(&self, offset: DVec2, size: DVec2) -> f64 {
-        let (x, size) = (offset / self.period, size / self.period);
-        self.factor(x.x, size.x) * self.factor(x.y, size.y)
-    }
-
-    fn along(&self, _distance: f64, _size: f64) -> f64 {
-        1.0
-    }
-
-    fn wrap(&self, _period: f64, _distance: f64, _size: f64) -> f64 {
-        0.0
-    }
-
-    fn steepest(&self, _distance: f64) -> f64 {
-        0.61
-    }
-
-    fn integral(&self, size: DVec2) -> f64 {
-        let size = size / self.period;
-        let mean = |size: f64| self.coefficients(0, size)[0][0];
-        self.period.element_product() * mean(size.x) * mean(size.y)
-    }
-
-    fn variance(&self) -> f64 {
-        1.0
-    }
-
-    fn modes(&self) -> Modes<'_> {
-        Modes::Product(self)
-    }
-
-    fn period(&self) -> Option<DVec2> {
-        Some(self.period)
-    }
-
-    fn parameters(&self) -> Vec<[f32; 4]> {
-        vec![[1.0 / self.period.x as f32, 1.0 / self.period.y as f32, self.mean as f32, 0.0]]
-    }
-}
-
-impl Factor for SineGaussian {
-    fn coefficients(&self, highest: u32, size: f64) -> Vec<[f64; 2]> {
-        by_samples(highest, samples(highest, size), |x| self.factor(x, size))
-    }
-
-    fn tails(&self, highest: u32, size: f64) -> Vec<f64> {
-        tails(self, highest, size)
-    }
-
-    fn mean(&self, size: f64) -> f64 {
-        self.coefficients(0, size)[0][0]
-    }
-
-    fn degree(&self, error: f64, size: f64) -> f64 {
-        degree(error, size)
+        (1.0 / error).max(3.0).ln().sqrt() / (SQRT_2 * PI * size) + 2.0
     }
 }

@@ -1,13 +1,18 @@
 //! The program as a user runs it: what it writes, what it says, what it exits with.
 
 mod bad_input;
+mod calibrate;
 mod harmonics;
 mod outputs;
+mod plan;
 mod refusals;
+mod rex;
+mod tradeoff;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use serde_json::Value;
 use tempfile::TempDir;
 use vglare::photo::{self, Photo, WriteOptions};
 
@@ -44,8 +49,24 @@ impl Workplace {
 
     /// Runs the program in this folder.
     fn vglare(&self, args: &[&str]) -> Ran {
-        let program = Path::new(env!("CARGO_BIN_EXE_vglare"));
-        Ran(Command::new(program).args(args).current_dir(self.folder.path()).output().expect("the program runs"))
+        Ran(self.command(args).output().expect("the program runs"))
+    }
+
+    /// The program, in this folder, which has the cache as well: the user's own is left alone.
+    fn command(&self, args: &[&str]) -> Command {
+        let mut command = Command::new(Path::new(env!("CARGO_BIN_EXE_vglare")));
+        command.args(args).current_dir(self.folder.path()).env("VGLARE_CACHE", self.path("cache"));
+        command
+    }
+
+    /// What the program printed as JSON.
+    fn json(&self, args: &[&str]) -> Value {
+        serde_json::from_str(&self.vglare(args).succeeded().stdout()).expect("JSON")
+    }
+
+    /// A file of JSON.
+    fn read_json(&self, name: &str) -> Value {
+        serde_json::from_str(&std::fs::read_to_string(self.path(name)).expect("a file")).expect("JSON")
     }
 
     /// The names of all files.

@@ -1,7 +1,5 @@
 //! Graf's theorem on the device against Graf's theorem in f64, and both against the bells themselves.
 
-use std::time::Instant;
-
 use glam::DVec2;
 use vglare::frame::{Frame, Window};
 use vglare::gpu::{Backend, Device};
@@ -127,27 +125,4 @@ fn a_window_is_cut_from_the_same_field() {
             assert!(error < 2e-6, "{backend}, from {x}, {y}: {error:e}");
         });
     }
-}
-
-#[test]
-#[ignore = "takes its time from the machine"]
-fn a_large_field_takes_less_than_two_seconds() {
-    let series = FourierBessel::new(BELL, RADIUS, 100, Chain::Whole);
-    let spots = spots(2, 0.5);
-    let scene = GrafScene { series: &series, spots: &spots, highest: 100, kappa: Kappa::Right };
-    on_each_backend(|backend, renderer| {
-        let mut render = || {
-            let started = Instant::now();
-            renderer.render(&scene, Frame::full(1024, 1024)).unwrap();
-            started.elapsed().as_secs_f64()
-        };
-        let (first, later) = (render(), [render(), render(), render()]);
-        println!("{backend}: {first:.3} s at first, then {later:.3?} s");
-        assert!(later.iter().copied().fold(f64::INFINITY, f64::min) < 2.0, "{backend}");
-        renderer.set_timing(true);
-        renderer.render(&scene, Frame::full(1024, 1024)).unwrap();
-        for time in renderer.take_times() {
-            println!("  {} {:.1} ms", time.pass, time.wall_ms);
-        }
-    });
 }

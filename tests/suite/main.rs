@@ -1,6 +1,7 @@
 //! The promises, one module each.
 
 mod bells;
+mod certificate;
 mod cli;
 mod composite;
 mod evaluators;

@@ -1,5 +1,7 @@
 //! Tolerance in, plan out: what a plan predicts holds, what is asked of it is respected, and what cannot be had is said.
 
+mod search;
+
 use glam::DVec2;
 use vglare::Error;
 use vglare::frame::{Frame, Window};

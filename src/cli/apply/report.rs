@@ -2,9 +2,10 @@
 
 use serde::Serialize;
 
-use super::gather::Gathered;
 use super::run::Run;
 use crate::certificate::Certificate;
+use crate::cli::plan::CostModelReport;
+use crate::cli::scene::Gathered;
 use crate::gpu::{Info, PassTime};
 use crate::photo::{BadKind, BadPixels, Photo};
 use crate::plan::Plan;
@@ -20,6 +21,8 @@ pub struct Report<'a> {
     normalize: crate::renderer::Normalize,
     mix: super::Mix,
     plan: Option<&'a Plan>,
+    cost: Option<CostReport<'a>>,
+    notes: &'a [String],
     error: Option<&'a Certificate>,
     passes: &'a [PassTime],
     milliseconds: Vec<Stage>,
@@ -34,6 +37,16 @@ struct PhotoReport {
     picture: [u32; 2],
     window: [i64; 4],
     bad_pixels: BadReport,
+}
+
+/// What spectrum and field were expected to take, and what they took together with the composite. A driver may compile
+/// in that time, when it meets a shader for the first time.
+#[derive(Serialize)]
+struct CostReport<'a> {
+    budget_ms: Option<f64>,
+    predicted_ms: Option<f64>,
+    measured_ms: Option<f64>,
+    model: CostModelReport<'a>,
 }
 
 /// How many pixels are no light, and where the first one is.
@@ -86,13 +99,25 @@ impl<'a> Report<'a> {
             strength: run.args.look.strength,
             normalize: run.args.look.normalize,
             mix: run.args.look.mix,
-            plan: run.plan.as_ref(),
+            plan: run.planned.as_ref().map(|planned| &planned.plan),
+            cost: cost_report(run),
+            notes: run.planned.as_ref().map_or(&[], |planned| &planned.notes),
             error: run.certificate.as_ref(),
             passes: &run.passes,
             milliseconds: run.stages.iter().map(|&(stage, wall_ms)| Stage { stage, wall_ms }).collect(),
             renderer: run.device.as_ref().map(|device| device.info()),
         }
     }
+}
+
+fn cost_report<'a>(run: &'a Run<'_>) -> Option<CostReport<'a>> {
+    let planned = run.planned.as_ref()?;
+    Some(CostReport {
+        budget_ms: run.args.accuracy.budget,
+        predicted_ms: planned.plan.cost(),
+        measured_ms: run.measured_ms,
+        model: CostModelReport::new(planned),
+    })
 }
 
 fn photo_report(run: &Run<'_>, photo: &Photo, bad: &BadPixels) -> PhotoReport {

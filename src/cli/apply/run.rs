@@ -3,15 +3,17 @@
 use std::rc::Rc;
 use std::time::Instant;
 
-use super::gather::{self, Files, Gathered};
 use super::report::Report;
-use super::{Args, summary};
-use crate::certificate::Certificate;
+use super::{Args, Mix, look, summary};
+use crate::certificate::{Certificate, Verify};
+use crate::cli::accuracy::Planned;
 use crate::cli::progress::Progress;
+use crate::cli::scene::{Files, Gathered};
+use crate::frame::Frame;
 use crate::gpu::{Device, PassTime};
 use crate::photo::{self, Photo, WriteOptions};
-use crate::plan::{self, Plan, Request};
 use crate::renderer::{Renderer, Settings};
+use crate::scene::Ghost;
 use crate::target;
 use crate::{Error, Result};
 
@@ -19,9 +21,11 @@ use crate::{Error, Result};
 pub struct Run<'a> {
     pub args: &'a Args,
     pub device: Option<Rc<Device>>,
-    pub plan: Option<Plan>,
+    pub planned: Option<Planned>,
     pub certificate: Option<Certificate>,
     pub passes: Vec<PassTime>,
+    /// Milliseconds that spectrum, field and composite took, without upload and readback; where passes were timed.
+    pub measured_ms: Option<f64>,
     /// Stages and their milliseconds.
     pub stages: Vec<(&'static str, f64)>,
     pub warnings: Vec<String>,
@@ -36,21 +40,22 @@ pub fn run(args: &Args) -> Result<()> {
     let mut run = Run {
         args,
         device: None,
-        plan: None,
+        planned: None,
         certificate: None,
         passes: Vec::new(),
+        measured_ms: None,
         stages: Vec::new(),
         warnings: Vec::new(),
     };
-    let files = Files::read(args)?;
+    let files = Files::read(&args.scene)?;
     progress.step("reading the photo");
     let mut photo = run.read()?;
     run.check_targets(&photo)?;
 
     progress.step("finding the lights");
     let bad = run.stage("survey", |_| photo::survey(&photo));
-    let scene = run.stage("lights", |_| files.gather(&photo, args));
-    let (settings, warning) = gather::settings(args, &photo, &scene)?;
+    let scene = run.stage("lights", |_| files.gather(&photo, &args.find, args.look.mix == Mix::Energy));
+    let (settings, warning) = look::settings(&args.look, &photo, &scene)?;
     run.warnings.extend(warning);
 
     let glare = if args.look.strength == 0.0 {
@@ -68,7 +73,7 @@ pub fn run(args: &Args) -> Result<()> {
     drop(progress);
     summary::print(&run, &photo, &bad, &scene)?;
     match &run.certificate {
-        Some(certificate) if args.accuracy.strict => certificate.check(),
+        Some(certificate) if args.proof.strict => certificate.check(),
         _ => Ok(()),
     }
 }
@@ -145,38 +150,58 @@ impl Run<'_> {
         let device = self.device.clone().ok_or_else(|| Error::Gl("no device was opened".into()))?;
         let (args, frame) = (self.args, photo.frame);
         progress.step("planning");
-        let request = Request {
-            period: args.accuracy.period.or(scene.period),
-            degree: args.accuracy.degree.map(|degree| degree.0).or(scene.degree),
-            evaluator: args.accuracy.evaluator,
-            loop_rounds: device.info().loop_rounds().unwrap_or(usize::MAX),
-            most_terms: (device.info().limits.storage_block / 48) as usize,
-            ..Request::new(frame, args.accuracy.tolerance)
-        };
-        let plan = self.stage("plan", |_| plan::plan(&scene.ghosts, &request))?;
+        let planned = self.stage("plan", |_| args.accuracy.plan(scene, frame, Some(device.info())))?;
+        self.warnings.extend(planned.warnings.iter().cloned());
+        let plan = &planned.plan;
 
         progress.step("computing the glare");
         let mut renderer = Renderer::new(&device)?;
-        renderer.set_timing(args.verbose || args.output_options.report.is_some());
-        self.stage("spectrum", |_| renderer.set_scene(&scene.ghosts, &plan))?;
+        let timing = args.verbose || args.output_options.report.is_some() || args.accuracy.budget.is_some();
+        renderer.set_timing(timing);
+        self.stage("spectrum", |_| renderer.set_scene(&scene.ghosts, plan))?;
+        self.passes = renderer.take_times();
+        let spectrum = milliseconds(&self.passes);
         let glare = match &args.output_options.glare {
             Some(_) => Some(self.stage("glare", |_| renderer.glare(frame, settings))?),
             None => None,
         };
+        self.passes.extend(renderer.take_times());
         self.stage("composite", |_| renderer.composite(frame, &mut photo.pixels, settings))?;
-        self.passes = renderer.take_times();
+        let composite = renderer.take_times();
+        self.measured_ms = timing.then(|| spectrum + milliseconds(&composite));
+        self.passes.extend(composite);
         renderer.set_timing(false);
 
+        self.certify(progress, &mut renderer, &scene.ghosts, &planned, frame)?;
+        self.planned = Some(planned);
+        Ok(glare)
+    }
+
+    /// Holds the field against the direct sum, and warns where it is further off than was asked.
+    fn certify(
+        &mut self,
+        progress: &Progress,
+        renderer: &mut Renderer,
+        ghosts: &[Ghost],
+        planned: &Planned,
+        frame: Frame,
+    ) -> Result<()> {
+        let (plan, verify) = (&planned.plan, self.args.proof.verify);
+        // Of a budget or a raised floor, what was reached; otherwise what was asked.
+        let asked = plan.tolerance;
         progress.step("measuring the error");
-        let asked = args.accuracy.tolerance;
-        let certificate =
-            self.stage("certify", |_| Certificate::measure(&mut renderer, &scene.ghosts, &plan, frame, asked))?;
+        let certificate = self.stage("certify", |_| match verify {
+            Verify::Sample => Certificate::measure(renderer, ghosts, plan, frame, asked),
+            Verify::Full => {
+                progress.measured(frame.window.pixels());
+                Certificate::measure_all(renderer, ghosts, plan, frame, asked, |pixels| progress.advance(pixels))
+            }
+        })?;
         if let Err(error) = certificate.check() {
             self.warnings.push(error.to_string());
         }
         self.certificate = Some(certificate);
-        self.plan = Some(plan);
-        Ok(glare)
+        Ok(())
     }
 
     fn write(&mut self, photo: &Photo, glare: Option<Vec<[f32; 4]>>) -> Result<()> {
@@ -188,4 +213,10 @@ impl Run<'_> {
             photo::write(&args.output, photo, &run.picture_options())
         })
     }
+}
+
+/// What a budget is for; moving the picture to the device and back is not in it.
+fn milliseconds(passes: &[PassTime]) -> f64 {
+    let counts = |time: &&PassTime| time.pass != "upload" && time.pass != "readback";
+    passes.iter().filter(counts).map(|time| time.wall_ms).sum()
 }

@@ -2,10 +2,12 @@
 
 use std::io::{self, Write};
 
-use super::gather::Gathered;
 use super::report::kind_name;
 use super::run::Run;
 use crate::Result;
+use crate::certificate::Verify;
+use crate::cli::plan::text;
+use crate::cli::scene::Gathered;
 use crate::cli::stdout;
 use crate::photo::{BadPixels, Photo};
 use crate::plan::Plan;
@@ -21,8 +23,9 @@ pub fn print(run: &Run<'_>, photo: &Photo, bad: &BadPixels, scene: &Gathered) ->
     stdout::print(|out| {
         about_photo(out, run, photo, bad)?;
         about_scene(out, scene)?;
-        if let Some(plan) = &run.plan {
-            about_plan(out, run, plan)?;
+        if let Some(planned) = &run.planned {
+            about_plan(out, run, &planned.plan)?;
+            planned.notes.iter().try_for_each(|note| writeln!(out, "note     {note}"))?;
         }
         if run.args.verbose {
             about_times(out, run)?;
@@ -69,21 +72,17 @@ fn about_scene(out: &mut dyn Write, scene: &Gathered) -> io::Result<()> {
 }
 
 fn about_plan(out: &mut dyn Write, run: &Run<'_>, plan: &Plan) -> io::Result<()> {
-    if plan.ghosts() > 0 {
-        write!(out, "plan     {}", plan.evaluator)?;
-        if plan.terms > 0 {
-            let ([n, m], period) = (plan.degree, plan.period);
-            write!(out, ", degree {n} x {m}, {} terms, period {:.2} x {:.2}", plan.terms, period.x, period.y)?;
-        }
-        match plan.dropped {
-            0 => writeln!(out)?,
-            n => writeln!(out, ", {n} ghosts out of reach")?,
-        }
+    text::plan(out, plan)?;
+    if let Some(budget) = run.args.accuracy.budget {
+        write!(out, "budget   {budget} ms bought a tolerance of {:.1e}", plan.tolerance)?;
+        let (predicted, measured) = (plan.cost().unwrap_or(f64::NAN), run.measured_ms.unwrap_or(f64::NAN));
+        writeln!(out, ": {predicted:.1} ms predicted, {measured:.1} ms measured")?;
     }
     if let Some(error) = &run.certificate {
+        let all = if error.verify == Verify::Full { "all " } else { "" };
         writeln!(
             out,
-            "error    {:.1e} measured at {} pixels, {:.1e} predicted, {:.1e} asked",
+            "error    {:.1e} measured at {all}{} pixels, {:.1e} predicted, {:.1e} asked",
             error.measured, error.pixels, error.predicted, error.asked
         )?;
     }
@@ -94,20 +93,8 @@ fn about_plan(out: &mut dyn Write, run: &Run<'_>, plan: &Plan) -> io::Result<()>
 }
 
 fn about_times(out: &mut dyn Write, run: &Run<'_>) -> io::Result<()> {
-    if let Some(plan) = &run.plan {
-        let error = plan.predicted;
-        for (source, value) in [
-            ("ghosts left out", error.dropped),
-            ("wrapped copies", error.periodisation),
-            ("harmonics left out", error.truncation),
-            ("interpolation", error.interpolation),
-            ("rounding", error.rounding),
-        ] {
-            writeln!(out, "         at most {value:.1e} from {source}")?;
-        }
-        for cost in &plan.costs {
-            writeln!(out, "         {} was expected to cost {:.1} units", cost.evaluator, cost.milliseconds)?;
-        }
+    if let Some(planned) = &run.planned {
+        text::details(out, planned)?;
     }
     for pass in &run.passes {
         write!(out, "pass     {:<13}{:>9.2} ms", pass.pass, pass.wall_ms)?;

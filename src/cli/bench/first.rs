@@ -16,7 +16,7 @@ pub(super) fn frame(stage: &Stage, opened: Duration, report: &mut Report) -> Res
     let ghosts = scenes::default_lens()?;
     let mut pixels = vec![[0.5; 4]; stage.frame.window.pixels()];
     let started = Instant::now();
-    let plan = plan(&ghosts, &Request::new(stage.frame, 1e-3))?;
+    let plan = plan(&ghosts, &Request { cost_model: stage.cost_model, ..Request::new(stage.frame, 1e-3) })?;
     let planned = started.elapsed();
 
     let started = Instant::now();

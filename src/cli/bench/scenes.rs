@@ -20,7 +20,7 @@ pub(super) fn default_lens() -> Result<Vec<Ghost>> {
 }
 
 /// `count` Gaussians spread evenly over the picture and a little beyond, of `smallest` to twice that size.
-pub(super) fn scattered(count: usize, smallest: f64, frame: Frame) -> Vec<Ghost> {
+pub(in crate::cli) fn scattered(count: usize, smallest: f64, frame: Frame) -> Vec<Ghost> {
     let aspect = f64::from(frame.width) / f64::from(frame.height);
     // Multiples of irrational numbers, modulo 1: as even as a grid, and without its rows.
     let part = |k: usize, irrational: f64| (0.5 + k as f64 * irrational).fract();

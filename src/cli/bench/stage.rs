@@ -6,7 +6,7 @@ use crate::Result;
 use crate::frame::Frame;
 use crate::gpu::{Device, PassTime};
 use crate::measure::{Rounds, Samples};
-use crate::plan::Plan;
+use crate::plan::{CostModel, Plan};
 use crate::renderer::{Renderer, Settings};
 use crate::scene::Ghost;
 
@@ -18,6 +18,8 @@ pub(super) struct Stage {
     device: Rc<Device>,
     pub frame: Frame,
     pub rounds: Rounds,
+    /// What the plan that is left to choose reckons with.
+    pub cost_model: CostModel,
 }
 
 /// A renderer with a scene and a photo.
@@ -37,8 +39,8 @@ pub(super) struct Pass {
 }
 
 impl Stage {
-    pub fn new(device: Rc<Device>, [width, height]: [u32; 2], rounds: Rounds) -> Self {
-        Self { device, frame: Frame::full(width, height), rounds }
+    pub fn new(device: Rc<Device>, [width, height]: [u32; 2], rounds: Rounds, cost_model: CostModel) -> Self {
+        Self { device, frame: Frame::full(width, height), rounds, cost_model }
     }
 
     pub fn device(&self) -> &Device {

@@ -135,7 +135,7 @@ pub(in crate::rex) fn meant(sigma: f64) -> Result<Figure> {
     }
     let caption = "In the notes' bell the mean draws two lobes together, which widen and merge near 1. The von Mises \
                    bell exp(κ (cos(x − μ) − 1)), κ = 1/σ², has one lobe, which the mean moves without changing it: \
-                   what the notes looked for. At μ = 0 the two are the same near 0. Its coefficients are exp(−κ) I_n(κ).";
+                   what the notes looked for. At μ = 0 the two are nearly the same around 0. Its coefficients are exp(−κ) I_n(κ).";
     Figure::chart("meant", caption, &chart)
 }
 

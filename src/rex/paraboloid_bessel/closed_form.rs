@@ -15,7 +15,7 @@ use crate::series::fourier_bessel::truncation;
 use crate::series::{kappa, special};
 
 /// E_nm = κ_nm ĝ(q)/T², ĝ(q) = (πAρ²/2) 8J_2(qρ)/(qρ)², q = 2π|(n, m)|/T, for n, m = 0 ..= N, and the series
-/// Σ E_nm cos nω(x − x_k) cos mω(y − y_k) (docs/math.md, section 3.4).
+/// Σ E_nm cos nω(x − x_k) cos mω(y − y_k) (docs/math.md, "Paraboloid").
 struct ClosedForm {
     period: f64,
     degree: u32,

@@ -8,17 +8,6 @@ pub fn erf(x: f64) -> f64 {
     libm::erf(x)
 }
 
-/// erf(x) by Abramowitz and Stegun 7.1.26, the approximation of the notes, within 1.4e-7.
-///
-/// The formula is for x ≥ 0 and continues as an odd function; at 0 itself it leaves 1e-9.
-pub fn erf_7_1_26(x: f64) -> f64 {
-    const COEFFICIENTS: [f64; 5] = [0.254829592, -0.284496736, 1.421413741, -1.453152027, 1.061405429];
-    let t = 1.0 / (1.0 + 0.3275911 * x.abs());
-    let polynomial = COEFFICIENTS.iter().rev().fold(0.0, |sum, coefficient| (sum + coefficient) * t);
-    let value = 1.0 - polynomial * (-x * x).exp();
-    if x < 0.0 { -value } else { value }
-}
-
 /// e^(−b²) Re erf(a + ib) for finite a and b, within 1e-15; between −1 and 1.
 ///
 /// Times √(2π)σ/2 it is ∫₀^{T/2} exp(−x²/2σ²) cos(qx) dx, with a = T/(2√2σ) and b = qσ/√2. erf(a + ib) itself overflows

@@ -7,7 +7,7 @@
 //! | `cubics` | J_0 to J_M as piecewise cubics |
 //! | `zeros` | the zeros of J_0 |
 //! | `kernels` | the transforms of the parabola and of the paraboloid, safe at 0 |
-//! | `error_function` | erf, its approximation in the notes, and the windowed Gaussian's complex one |
+//! | `error_function` | erf, and the windowed Gaussian's complex one |
 
 mod bessel_i;
 mod bessel_j;
@@ -19,6 +19,6 @@ mod zeros;
 pub use bessel_i::{ive, ive_all};
 pub use bessel_j::{Factorial, bessel_j, bessel_j_all, bessel_j_series};
 pub use cubics::bessel_cubics;
-pub use error_function::{erf, erf_7_1_26, re_erf_scaled};
+pub use error_function::{erf, re_erf_scaled};
 pub use kernels::{parabola_kernel, paraboloid_kernel};
 pub use zeros::{J0Zero, j0_zeros};

@@ -97,6 +97,7 @@ fn a_full_disk_leaves_nothing_behind() {
         let ran = Command::new("sh")
             .args(["-c", script, env!("CARGO_BIN_EXE_vglare"), output])
             .env("MESA_SHADER_CACHE_DISABLE", "1")
+            .env("VGLARE_CACHE", place.path("cache"))
             .current_dir(place.folder.path())
             .output()
             .expect("a shell");

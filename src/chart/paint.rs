@@ -1,5 +1,7 @@
 //! Charts drawn with `plotters`: four times as large as they become, because its lines lie on whole pixels.
 
+mod marks;
+
 use std::sync::OnceLock;
 
 use image::RgbImage;
@@ -11,22 +13,23 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color as _, FontStyle, FontTransform, IntoFont as _, RGBColor, ShapeStyle, TextStyle};
 
 use super::axis::{Scale, Tick};
+use super::layout::Layout;
 use super::line::{Point, clipped, dashes};
-use super::{Along, Axis, COLOURS, Chart, Colour, Mark, Series, Stroke};
+use super::{Axis, COLOURS, Chart, Colour, Series, Stroke};
 use crate::{Error, Result};
 
 /// Drawn pixels along a side of a pixel of the picture.
-const FINE: i32 = 4;
+pub(super) const FINE: i32 = 4;
 
 /// Sizes in pixels of the picture.
-const MARGIN: [i32; 4] = [92, 24, 28, 68]; // left, top, right, bottom
-const TITLE: i32 = 40;
-const LEGEND_ROW: i32 = 27;
-const SWATCH: i32 = 40;
-const BAR: [i32; 3] = [24, 22, 84]; // gap, bar, numbers
+pub(super) const MARGIN: [i32; 4] = [92, 24, 28, 68]; // left, top, right, bottom
+pub(super) const TITLE: i32 = 40;
+pub(super) const LEGEND_ROW: i32 = 27;
+pub(super) const SWATCH: i32 = 40;
+pub(super) const BAR: [i32; 3] = [24, 22, 84]; // gap, bar, numbers
 const TITLE_FONT: f64 = 25.0;
 const LABEL_FONT: f64 = 21.0;
-const FONT: f64 = 19.0;
+pub(super) const FONT: f64 = 19.0;
 
 /// `plotters` takes a font's box to be less high than it is.
 const BITMAP_DROP: i32 = 3 * FINE;
@@ -102,66 +105,9 @@ fn colour(series: &Series, index: usize) -> Colour {
 }
 
 /// The drawn width of a text.
-fn text_width(text: &str, size: f64) -> i32 {
+pub(super) fn text_width(text: &str, size: f64) -> i32 {
     let measured = font(size).ok().and_then(|style| style.font.box_size(text).ok());
     measured.map_or(0, |(width, _)| width as i32)
-}
-
-/// A line of the legend: entries by index, and where each begins.
-type LegendRow = Vec<(usize, i32)>;
-
-/// Where things stand, in fine pixels.
-struct Layout {
-    plot: [i32; 4],
-    legend: Vec<LegendRow>,
-    x: Scale,
-    y: Scale,
-}
-
-impl Layout {
-    fn new(chart: &Chart) -> Self {
-        let [width, height] = chart.size.map(|side| side as i32 * FINE);
-        let [left, top, right, bottom] = MARGIN.map(|side| side * FINE);
-        let beside = if chart.bar.is_some() { BAR.iter().sum::<i32>() * FINE } else { 0 };
-        let legend = legend(chart, left, width - right);
-        let above = top + FINE * (TITLE + LEGEND_ROW * legend.len() as i32);
-        let along = |axis: usize| chart.series.iter().flat_map(move |s| s.points.iter().map(move |point| point[axis]));
-        let marks = |along: Along| chart.marks.iter().filter(move |mark| mark.along == along).map(|mark| mark.at);
-        Self {
-            plot: [left, above, width - right - beside, height - bottom],
-            legend,
-            x: Scale::new(&chart.x, along(0).chain(marks(Along::Vertical))),
-            y: Scale::new(&chart.y, along(1).chain(marks(Along::Horizontal))),
-        }
-    }
-
-    fn x(&self, place: f64) -> f64 {
-        f64::from(self.plot[0]) + place * f64::from(self.plot[2] - self.plot[0])
-    }
-
-    fn y(&self, place: f64) -> f64 {
-        f64::from(self.plot[3]) - place * f64::from(self.plot[3] - self.plot[1])
-    }
-
-    fn point(&self, [x, y]: [f64; 2]) -> Option<Point> {
-        Some([self.x(self.x.place(x)?), self.y(self.y.place(y)?)])
-    }
-}
-
-/// The legend's rows: as many entries in each as find room.
-fn legend(chart: &Chart, left: i32, right: i32) -> Vec<LegendRow> {
-    let mut rows: Vec<LegendRow> = Vec::new();
-    let mut next = right;
-    for (index, series) in chart.series.iter().enumerate().filter(|(_, series)| !series.label.is_empty()) {
-        let width = text_width(&series.label, FONT) + FINE * (SWATCH + 34);
-        if rows.is_empty() || next + width > right {
-            rows.push(Vec::new());
-            next = left;
-        }
-        rows.last_mut().expect("pushed above").push((index, next));
-        next += width;
-    }
-    rows
 }
 
 struct Painter<'a, B: DrawingBackend> {
@@ -195,8 +141,8 @@ impl<B: DrawingBackend> Painter<'_, B> {
     }
 
     fn frame(&self, [left, top, right, bottom]: [i32; 4]) -> Result<()> {
-        let style = ShapeStyle::from(rgb(INK)).stroke_width(FINE as u32);
-        self.area.draw(&Rectangle::new([(left, top), (right, bottom)], style)).map_err(failed)
+        let corners = [[left, top], [right, top], [right, bottom], [left, bottom], [left, top]];
+        self.line(&corners.map(|corner| corner.map(f64::from)), INK, 1.0)
     }
 
     fn text(&self, text: &str, size: f64, at: [i32; 2], anchor: (HPos, VPos), turned: bool) -> Result<()> {
@@ -274,57 +220,10 @@ impl<B: DrawingBackend> Painter<'_, B> {
                 let ends = [f64::from(x), f64::from(x + SWATCH * FINE)];
                 let swatch = [[ends[0], middle], [ends[1], middle]];
                 self.stroke(&swatch, series.stroke, colour(series, index))?;
-                if matches!(series.stroke, Stroke::Points | Stroke::Joined) {
-                    self.disc([0.5 * (ends[0] + ends[1]), middle], colour(series, index))?;
-                }
+                self.point([0.5 * (ends[0] + ends[1]), middle], series.stroke, colour(series, index))?;
                 let at = [x + (SWATCH + 9) * FINE, y + FINE * 6];
                 self.text(&series.label, FONT, at, (HPos::Left, VPos::Center), false)?;
             }
-        }
-        Ok(())
-    }
-
-    /// The two ends of a mark's line; none where it has no place.
-    fn mark(&self, mark: &Mark) -> Option<[Point; 2]> {
-        let [left, top, right, bottom] = self.layout.plot.map(f64::from);
-        match mark.along {
-            Along::Vertical => {
-                self.layout.x.place(mark.at).map(|place| self.layout.x(place)).map(|x| [[x, top], [x, bottom]])
-            }
-            Along::Horizontal => {
-                self.layout.y.place(mark.at).map(|place| self.layout.y(place)).map(|y| [[left, y], [right, y]])
-            }
-        }
-    }
-
-    fn marks(&self) -> Result<()> {
-        for line in self.chart.marks.iter().filter_map(|mark| self.mark(mark)) {
-            for dash in dashes(&line, 7.0 * f64::from(FINE), 4.0 * f64::from(FINE)) {
-                self.line(&dash, [110; 3], 1.2)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// The marks' labels, on white, over the curves.
-    fn mark_labels(&self) -> Result<()> {
-        for (mark, [start, end]) in self.chart.marks.iter().filter_map(|mark| Some((mark, self.mark(mark)?))) {
-            if mark.label.is_empty() {
-                continue;
-            }
-            let (long, thick) = (text_width(&mark.label, FONT) + 8 * FINE, 20 * FINE);
-            // Right of a line that goes up, at its top; above one that goes across, at its right end.
-            let (corner, size, turned) = match mark.along {
-                Along::Vertical => ([start[0] as i32 + 2 * FINE, start[1] as i32 + 3 * FINE], [thick, long], true),
-                Along::Horizontal => {
-                    ([end[0] as i32 - 3 * FINE - long, end[1] as i32 - 2 * FINE - thick], [long, thick], false)
-                }
-            };
-            let opposite = (corner[0] + size[0], corner[1] + size[1]);
-            let white = plotters::style::WHITE.filled();
-            self.area.draw(&Rectangle::new([(corner[0], corner[1]), opposite], white)).map_err(failed)?;
-            let center = [corner[0] + size[0] / 2, corner[1] + size[1] / 2];
-            self.text(&mark.label, FONT, center, (HPos::Center, VPos::Center), turned)?;
         }
         Ok(())
     }
@@ -335,27 +234,29 @@ impl<B: DrawingBackend> Painter<'_, B> {
         }
         let [left, top, right, bottom] = self.layout.plot.map(f64::from);
         let points = || series.points.iter().map(|&point| self.layout.point(point));
-        if series.stroke != Stroke::Points {
+        if !matches!(series.stroke, Stroke::Points | Stroke::Rings) {
             for part in clipped(points(), [left, top], [right, bottom]) {
                 self.stroke(&part, series.stroke, colour)?;
             }
         }
-        if matches!(series.stroke, Stroke::Points | Stroke::Joined) {
-            let inside = |p: &Point| p[0] >= left && p[0] <= right && p[1] >= top && p[1] <= bottom;
-            points().flatten().filter(inside).try_for_each(|point| self.disc(point, colour))?;
-        }
-        Ok(())
+        let inside = |p: &Point| p[0] >= left && p[0] <= right && p[1] >= top && p[1] <= bottom;
+        points().flatten().filter(inside).try_for_each(|point| self.point(point, series.stroke, colour))
     }
 
-    fn disc(&self, [x, y]: Point, colour: Colour) -> Result<()> {
-        let disc = Circle::new((x.round() as i32, y.round() as i32), 4 * FINE + FINE / 2, rgb(colour).filled());
-        self.area.draw(&disc).map_err(failed)
+    /// What a stroke draws at a point: a disc, a ring, or nothing.
+    fn point(&self, [x, y]: Point, stroke: Stroke, colour: Colour) -> Result<()> {
+        let (radius, style) = match stroke {
+            Stroke::Points | Stroke::Joined => (4 * FINE + FINE / 2, rgb(colour).filled()),
+            Stroke::Rings => (8 * FINE, rgb(colour).stroke_width(2 * FINE as u32)),
+            _ => return Ok(()),
+        };
+        self.area.draw(&Circle::new((x.round() as i32, y.round() as i32), radius, style)).map_err(failed)
     }
 
     fn stroke(&self, line: &[Point], stroke: Stroke, colour: Colour) -> Result<()> {
         let fine = f64::from(FINE);
         let [on, off] = match stroke {
-            Stroke::Points => return Ok(()),
+            Stroke::Points | Stroke::Rings => return Ok(()),
             Stroke::Solid | Stroke::Joined | Stroke::Legend => return self.line(line, colour, 2.2),
             Stroke::Dashed => [11.0, 6.0],
             Stroke::Dotted => [2.5, 5.0],

@@ -2,6 +2,7 @@
 
 mod axis;
 mod field;
+mod layout;
 mod line;
 mod paint;
 
@@ -10,7 +11,6 @@ use image::RgbImage;
 pub use axis::Axis;
 pub use field::{Map, Scalar, side_by_side};
 
-use super::report::Numbers;
 use crate::Result;
 
 /// A colour, sRGB.
@@ -32,6 +32,8 @@ pub enum Stroke {
     Points,
     /// A disc at each point, joined by a line.
     Joined,
+    /// A ring around each point and no line: picks points of other series out.
+    Rings,
     /// In the legend only: for what a backdrop shows.
     Legend,
 }
@@ -95,6 +97,14 @@ pub enum Along {
 pub struct Bar {
     pub axis: Axis,
     pub map: Map,
+}
+
+/// Columns of numbers; NaN is written as an empty cell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Numbers {
+    pub columns: Vec<String>,
+    /// As many numbers in each as there are columns.
+    pub rows: Vec<Vec<f64>>,
 }
 
 /// One chart.

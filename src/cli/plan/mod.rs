@@ -1,0 +1,192 @@
+//! `vglare plan`: what `vglare apply` would do, and why, without doing it.
+
+pub mod text;
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::accuracy::{AccuracyArgs, Planned};
+use super::lights::FindArgs;
+use super::scene::{Files, Gathered, SceneArgs};
+use super::stdout;
+use crate::frame::Frame;
+use crate::gpu::{Device, Info};
+use crate::plan::{CostModel, Plan};
+use crate::{Result, photo};
+
+/// Show how the glare of a photo would be computed
+///
+/// Prints the plan that `vglare apply` would follow with the same options: the period, the degree, the groups of ghosts,
+/// the bound of each source of error, what each evaluator is expected to cost, and why the others are not taken. Nothing
+/// is rendered or written. Without OpenGL 4.3 the plan is made for a device without limits.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// The photo: OpenEXR, Radiance HDR, PFM, TIFF, PNG or JPEG
+    photo: PathBuf,
+
+    /// Plan for a picture of this size in pixels, with the photo's lights where they are [default: the photo's]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<[u32; 2]>,
+
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    scene: SceneArgs,
+
+    #[command(flatten)]
+    find: FindArgs,
+
+    #[command(flatten)]
+    accuracy: AccuracyArgs,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  vglare plan night.exr                               How, how exactly, how fast?
+  vglare plan night.exr --budget 16 --size 3840x2160  How exact can a frame of film be?
+  vglare plan night.exr --tolerance 1e-5 --json";
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once(['x', 'X']).map(|(width, height)| [width.parse(), height.parse()]);
+    match sides {
+        Some([Ok(width @ 1..=65536), Ok(height @ 1..=65536)]) => Ok([width, height]),
+        _ => Err("expected WxH, each 1 to 65536 pixels, like 1920x1080".to_owned()),
+    }
+}
+
+/// Reads the photo, finds its lights, plans and prints.
+///
+/// # Errors
+/// Where the photo or a file of the scene cannot be read, where there is no plan, or standard output cannot be written.
+/// No OpenGL is no error.
+pub fn run(args: &Args) -> Result<()> {
+    let files = Files::read(&args.scene)?;
+    let photo = photo::read(&args.photo)?;
+    let scene = files.gather(&photo, &args.find, false);
+    let frame = args.size.map_or(photo.frame, |[width, height]| Frame::full(width, height));
+    let device = Device::open(args.accuracy.backend.backends()).ok();
+    let info = device.as_ref().map(|device| device.info());
+    let planned = args.accuracy.plan(&scene, frame, info)?;
+    for warning in &planned.warnings {
+        eprintln!("vglare: warning: {warning}");
+    }
+    let told = Told { photo: &args.photo, frame, scene: &scene, planned: &planned, info, budget: args.accuracy.budget };
+    stdout::print(|out| if args.json { told.json(out) } else { told.text(out) })
+}
+
+/// What is printed.
+struct Told<'a> {
+    photo: &'a Path,
+    frame: Frame,
+    scene: &'a Gathered,
+    planned: &'a Planned,
+    info: Option<&'a Info>,
+    budget: Option<f64>,
+}
+
+impl Told<'_> {
+    fn text(&self, out: &mut dyn Write) -> io::Result<()> {
+        let window = self.frame.window;
+        writeln!(out, "photo    {}, planned for {} x {} pixels", self.photo.display(), window.width, window.height)?;
+        match &self.scene.lens {
+            Some(lens) => {
+                let (lights, ghosts) = (self.scene.lights.len(), self.scene.ghosts.len());
+                writeln!(out, "scene    {lights} lights through {}: {ghosts} ghosts", lens.name)?;
+            }
+            None => writeln!(out, "scene    {} ghosts", self.scene.ghosts.len())?,
+        }
+        let plan = &self.planned.plan;
+        text::plan(out, plan)?;
+        if let Some(budget) = self.budget {
+            let predicted = plan.cost().unwrap_or(f64::NAN);
+            writeln!(out, "budget   {budget} ms buys a tolerance of {:.1e}: {predicted:.1} ms", plan.tolerance)?;
+        }
+        self.planned.notes.iter().try_for_each(|note| writeln!(out, "note     {note}"))?;
+        text::details(out, self.planned)?;
+        writeln!(out, "device   {}", self.device())
+    }
+
+    /// What the plan was made for.
+    fn device(&self) -> String {
+        match self.info {
+            Some(info) => match info.loop_rounds() {
+                Some(rounds) => format!("{}: at most {rounds} rounds of a shader's loops", info.renderer),
+                None => info.renderer.clone(),
+            },
+            None => "no OpenGL 4.3 here: assuming a device that ends no loop early and holds 2 Mi terms".to_owned(),
+        }
+    }
+
+    fn json(&self, out: &mut dyn Write) -> io::Result<()> {
+        let json = Json {
+            vglare: env!("CARGO_PKG_VERSION"),
+            photo: self.photo.display().to_string(),
+            size: [self.frame.window.width, self.frame.window.height],
+            lights: self.scene.lights.len(),
+            ghosts: self.scene.ghosts.len(),
+            plan: &self.planned.plan,
+            predicted_total: self.planned.plan.predicted.total(),
+            budget_ms: self.budget,
+            predicted_ms: self.planned.plan.cost(),
+            model: CostModelReport::new(self.planned),
+            notes: &self.planned.notes,
+            device: self.device(),
+            renderer: self.info,
+        };
+        serde_json::to_writer_pretty(&mut *out, &json)?;
+        writeln!(out)
+    }
+}
+
+#[derive(Serialize)]
+struct Json<'a> {
+    vglare: &'static str,
+    photo: String,
+    size: [u32; 2],
+    lights: usize,
+    ghosts: usize,
+    plan: &'a Plan,
+    predicted_total: f64,
+    budget_ms: Option<f64>,
+    predicted_ms: Option<f64>,
+    model: CostModelReport<'a>,
+    notes: &'a [String],
+    device: String,
+    renderer: Option<&'a Info>,
+}
+
+/// The cost model that decided, and where it is from.
+#[derive(Serialize)]
+pub struct CostModelReport<'a> {
+    /// "built-in" or "calibrated".
+    source: &'static str,
+    /// The calibration's file.
+    file: Option<&'a Path>,
+    nanoseconds: &'a CostModel,
+}
+
+impl<'a> CostModelReport<'a> {
+    pub fn new(planned: &'a Planned) -> Self {
+        let file = planned.calibration.as_deref();
+        let source = if file.is_some() { "calibrated" } else { "built-in" };
+        Self { source, file, nanoseconds: &planned.model }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_two_sides() {
+        assert_eq!(size("3840x2160"), Ok([3840, 2160]));
+        for bad in ["64", "64x", "x36", "0x36", "64x-1", "64x36x2", "99999x10", "a×b"] {
+            assert!(size(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! A plan in words.
+
+use std::io::{self, Write};
+
+use crate::cli::accuracy::Planned;
+use crate::plan::{Group, Plan};
+
+/// Groups that are told one by one.
+const GROUPS: usize = 12;
+
+/// The line of the summary.
+pub fn plan(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
+    if plan.ghosts() == 0 {
+        return Ok(());
+    }
+    write!(out, "plan     {}", plan.evaluator)?;
+    if plan.terms > 0 {
+        let ([n, m], period) = (plan.degree, plan.period);
+        write!(out, ", degree {n} x {m}, {} terms, period {:.2} x {:.2}", plan.terms, period.x, period.y)?;
+    }
+    match plan.dropped {
+        0 => writeln!(out),
+        n => writeln!(out, ", {n} ghosts out of reach"),
+    }
+}
+
+/// All that there is to say of it: groups, lattice, the bounds of the error line by line, and every candidate.
+pub fn details(out: &mut dyn Write, planned: &Planned) -> io::Result<()> {
+    let plan = &planned.plan;
+    groups(out, plan)?;
+    if let Some(lattice) = &plan.lattice {
+        let ([x, y], over) = (lattice.nodes, lattice.oversampling);
+        writeln!(out, "lattice  {x} x {y} nodes, {:.2} x {:.2} to the shortest half wave", over.x, over.y)?;
+    }
+    errors(out, plan)?;
+    candidates(out, plan)?;
+    match &planned.calibration {
+        Some(file) => writeln!(out, "costs    by what vglare calibrate measured here: {}", file.display()),
+        None => {
+            writeln!(out, "costs    by the built-in cost model, of two cores; vglare calibrate measures this machine")
+        }
+    }
+}
+
+fn groups(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
+    for (index, group) in plan.groups.iter().take(GROUPS).enumerate() {
+        let label = if index == 0 { "groups" } else { "" };
+        let Group { bell, ghosts, smallest, degree: [n, m], .. } = group;
+        write!(out, "{label:<9}{ghosts} {bell} of {:.3} x {:.3} and more", smallest.x, smallest.y)?;
+        if plan.terms > 0 { writeln!(out, ", degree {n} x {m}")? } else { writeln!(out)? }
+    }
+    match plan.groups.len().saturating_sub(GROUPS) {
+        0 => Ok(()),
+        more => writeln!(out, "         and {more} groups more"),
+    }
+}
+
+fn errors(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
+    let error = plan.predicted;
+    for (label, source, value) in [
+        ("bounds", "from ghosts left out (dropped)", error.dropped),
+        ("", "from wrapped copies (periodisation)", error.periodisation),
+        ("", "from harmonics left out (truncation)", error.truncation),
+        ("", "from interpolation", error.interpolation),
+        ("", "from rounding", error.rounding),
+        ("", "in all (total)", error.total()),
+    ] {
+        writeln!(out, "{label:<9}at most {value:.1e} {source}")?;
+    }
+    writeln!(out, "         {:.1e} is the tolerance", plan.tolerance)
+}
+
+/// The evaluators, the chosen one first; of the others, why not.
+fn candidates(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
+    let least = plan.cost().unwrap_or(f64::NAN);
+    for (index, cost) in plan.costs.iter().enumerate() {
+        let name = cost.evaluator.to_string();
+        match index {
+            0 => writeln!(out, "chosen   {name:<8}{:>10.1} ms expected", cost.milliseconds)?,
+            _ => {
+                let times = cost.milliseconds / least;
+                writeln!(out, "rejected {name:<8}{:>10.1} ms expected: {times:.1} times as much", cost.milliseconds)?;
+            }
+        }
+    }
+    for refusal in &plan.refused {
+        let name = refusal.evaluator.to_string();
+        writeln!(out, "refused  {name:<8}{}", refusal.reason)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,70 @@
+//! Files in a folder beside a page.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use image::{ImageFormat, RgbImage};
+use serde::Serialize;
+
+use crate::chart::Numbers;
+use crate::{Error, Result, target};
+
+/// The page's name.
+pub(crate) const INDEX: &str = "index.html";
+
+/// Opens a folder for a page with this generator's line, and makes it where it is missing.
+///
+/// # Errors
+/// [`Error::Occupied`] where the folder holds anything but such a page and what belongs to it, and `force` is not given;
+/// [`Error::Write`] where it cannot be made.
+pub(crate) fn open(folder: &Path, generator: &str, force: bool) -> Result<()> {
+    let refused = |error: std::io::Error| Error::write(folder, error);
+    if folder.exists() {
+        let empty = std::fs::read_dir(folder).map_err(refused)?.next().is_none();
+        let ours = || std::fs::read_to_string(folder.join(INDEX)).is_ok_and(|text| text.contains(generator));
+        if !empty && !force && !ours() {
+            return Err(Error::Occupied { path: folder.to_owned() });
+        }
+    }
+    std::fs::create_dir_all(folder).map_err(refused)
+}
+
+/// Writes a picture, in place of one that is there.
+///
+/// # Errors
+/// [`Error::Write`] where it cannot be written.
+pub(crate) fn write_png(path: &Path, picture: &RgbImage) -> Result<()> {
+    let mut png = Cursor::new(Vec::new());
+    picture.write_to(&mut png, ImageFormat::Png).map_err(|error| Error::write(path, error))?;
+    target::write(path, png.get_ref(), true)
+}
+
+type Reason = Box<dyn std::error::Error>;
+
+/// Numbers as CSV; what is no number becomes an empty cell.
+pub(crate) fn numbers_csv(numbers: &Numbers) -> Result<String, Reason> {
+    let rows = numbers.rows.iter().map(|row| row.iter().map(|&value| (!value.is_nan()).then_some(value)));
+    csv_text(&numbers.columns, rows.map(Iterator::collect::<Vec<_>>))
+}
+
+/// Rows under a header as CSV.
+pub(crate) fn csv_text<R: Serialize>(header: &[String], rows: impl Iterator<Item = R>) -> Result<String, Reason> {
+    let mut csv = csv::Writer::from_writer(Vec::new());
+    csv.write_record(header)?;
+    for row in rows {
+        csv.serialize(row)?;
+    }
+    Ok(String::from_utf8(csv.into_inner()?)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_become_csv_with_empty_cells_for_what_is_missing() {
+        let columns = ["x", "y, squared"].map(String::from).to_vec();
+        let numbers = Numbers { columns, rows: vec![vec![0.1, 1e-20], vec![0.2, f64::NAN]] };
+        assert_eq!(numbers_csv(&numbers).unwrap(), "x,\"y, squared\"\n0.1,1e-20\n0.2,\n");
+    }
+}

@@ -1,0 +1,67 @@
+//! Pages of results: one file of HTML without anything from elsewhere, and the folder that it lies in.
+
+mod folder;
+
+use std::fmt::Write as _;
+
+use crate::gpu::Info;
+
+pub(crate) use folder::{INDEX, csv_text, numbers_csv, open, write_png};
+
+const STYLE: &str = "
+:root { color-scheme: light dark; --ink: #1d2127; --soft: #5b6470; --line: #d9dde3; --ground: #fff; --card: #f6f7f9 }
+@media (prefers-color-scheme: dark) {
+  :root { --ink: #e6e8eb; --soft: #9aa4b1; --line: #363c45; --ground: #14171b; --card: #1c2026 } }
+body { font: 17px/1.55 system-ui, sans-serif; color: var(--ink); background: var(--ground);
+  max-width: 62rem; margin: 0 auto; padding: 2rem 1.2rem 4rem }
+h1 { font-size: 1.7rem; margin: 0 0 .3rem } h2 { font-size: 1.4rem; margin: 3.5rem 0 .5rem }
+p { max-width: 46rem } a { color: inherit } code { font-size: .9em }
+.soft, figcaption, caption { color: var(--soft); font-size: .93rem }
+figure { margin: 1.8rem 0 } figcaption { margin-top: .5rem; max-width: 56rem }
+img { max-width: 100%; height: auto; background: #fff; border: 1px solid var(--line); border-radius: 6px }
+.wide { overflow-x: auto } table { border-collapse: collapse; margin: .8rem 0; font-size: .95rem }
+caption { text-align: left; padding-bottom: .4rem }
+th, td { text-align: left; padding: .25rem 1.1rem .25rem 0; border-bottom: 1px solid var(--line); vertical-align: top }
+td.number { text-align: right; font-variant-numeric: tabular-nums }
+details { background: var(--card); border-radius: 6px; padding: .5rem .9rem; margin: .8rem 0 }
+nav ol { padding-left: 1.2rem } footer { margin-top: 4rem; border-top: 1px solid var(--line); padding-top: .8rem }
+";
+
+/// How a page begins; `generator` is the line that tells it from other programs' pages.
+pub(crate) fn head(title: &str, generator: &str) -> String {
+    format!(
+        "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n{generator}\n\
+         <title>{}</title>\n<style>{STYLE}</style>\n",
+        escaped(title)
+    )
+}
+
+/// The footer that says what drew it.
+pub(crate) fn drawn_on(Info { renderer, version, backend, route, .. }: &Info) -> String {
+    let gl = format!("{renderer}, OpenGL {version} through {backend} ({route})");
+    format!("<footer class=\"soft\">Drawn on {}.</footer>\n", escaped(&gl))
+}
+
+/// A table of names and values.
+pub(crate) fn pairs(caption: &str, pairs: &[(String, String)]) -> String {
+    let mut text = String::from("<div class=\"wide\"><table>\n");
+    if !caption.is_empty() {
+        let _ = writeln!(text, "<caption>{}</caption>", escaped(caption));
+    }
+    for (name, value) in pairs {
+        let _ = writeln!(text, "<tr><th scope=\"row\">{}</th>{}</tr>", escaped(name), cell(value));
+    }
+    text + "</table></div>\n"
+}
+
+/// A cell; numbers stand at the right.
+pub(crate) fn cell(value: &str) -> String {
+    let number = value.parse::<f64>().is_ok();
+    format!("<td{}>{}</td>", if number { " class=\"number\"" } else { "" }, escaped(value))
+}
+
+/// Text as it may stand in HTML.
+pub(crate) fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
