@@ -22,6 +22,7 @@ use serde::Serialize;
 
 use crate::gpu::{Device, Info};
 use crate::photo::Photo;
+use crate::plan::{Evaluator, Request};
 use crate::scene::Ghost;
 use crate::{Error, Result};
 
@@ -129,7 +130,8 @@ pub fn measure(
     let mut looks = Looks::default();
     stage(&mut |watch| looks::looks(&mut study, &points, &front, watch).map(|found| looks = found))?;
     let seen = front::choice(&points).and_then(|point| looks.delta_e(point));
-    let tight = study.tightest(|request| request);
+    // Whichever evaluator the planner takes, the phases are those of a series.
+    let tight = study.tightest(|request| Request { evaluator: Some(Evaluator::Rows), ..request });
     let period = tight.as_ref().filter(|(_, plan)| plan.terms > 0).map_or_else(|| wide(&study), |(_, p)| p.period.x);
     Ok(Results {
         vglare: env!("CARGO_PKG_VERSION"),
