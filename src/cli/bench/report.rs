@@ -264,6 +264,7 @@ mod tests {
                 texture_size: 0,
                 viewport: [0; 2],
                 storage_block: 0,
+                uniform_block: 0,
                 storage_bindings: 0,
                 work_groups: [0; 3],
                 work_group_invocations: 0,
