@@ -321,7 +321,7 @@ fn candidate(
     // What rounding costs depends on the degree, and the degree on what rounding leaves of the tolerance.
     let mut degree = request.degree.map_or(rounding::SEEN_DEGREE, |[n, m]| n.max(m));
     loop {
-        let rounding = rounding::bound(ghosts, &survey.weighed, evaluator, degree);
+        let rounding = rounding::bound(ghosts, &survey.weighed, request.frame, evaluator, degree);
         let plan = with_rounding(rounding, survey, wide, request, evaluator)?;
         let needed = plan.degree[0].max(plan.degree[1]);
         if evaluator == Evaluator::Direct || needed <= degree {
