@@ -1,6 +1,7 @@
 //! `vglare bench`: what each pass costs here, as ratios that were measured in one run.
 
 mod cases;
+mod exchange;
 mod first;
 mod gaussians;
 mod many;
@@ -145,6 +146,7 @@ fn measure(args: &Args) -> Result<Report> {
         cases::rows_and_series(&stage, &mut report)?;
     }
     cases::passes(&stage, &mut report, args.quick)?;
+    exchange::ways(&stage, &mut report)?;
     Ok(report)
 }
 
