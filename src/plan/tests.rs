@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use super::amplitudes::Amplitudes;
 use super::*;
 use crate::reference;
 use crate::series::{Bell, Modes};
@@ -121,4 +122,74 @@ fn a_given_oversampling_is_taken_and_its_bound_falls_with_the_fourth_power() {
     for nodes in [0.0, 1.0, -2.0, f64::NAN, f64::INFINITY, 1000.0] {
         assert!(matches!(of(nodes), Err(Error::Plan(_))), "{nodes}");
     }
+}
+
+/// The amplitudes of the first 13 x 9 modes of some ghosts in a period of 8 x 6, in their own units.
+fn amplitudes_of(ghosts: &[Ghost]) -> (Amplitudes, Vec<u32>, DVec2) {
+    let period = DVec2::new(8.0, 6.0);
+    let request = Request { period: Some(period), ..Request::new(Frame::full(64, 36), 1e-6) };
+    let mut survey = Survey::new(ghosts, &request);
+    let counts = terms::rectangle(&mut survey.groups, [12, 8]);
+    let amplitudes = Amplitudes::new(ghosts, &survey.groups, &counts, period, [1.0; 3]).unwrap();
+    (amplitudes, counts, period)
+}
+
+#[test]
+fn amplitudes_bound_what_is_left_out_and_one_ghost_reaches_them() {
+    let bells = [
+        Bell::Gaussian,
+        Bell::Paraboloid,
+        Bell::VonMises(crate::series::VonMises { period: DVec2::new(8.0, 6.0) }),
+        Bell::SineGaussian(crate::series::SineGaussian { period: DVec2::new(8.0, 6.0), mean: 0.4 }),
+    ];
+    let place = |k: usize, irrational: f64, span: f64| span * ((k as f64 + 0.5) * irrational).fract() - 0.5 * span;
+    let mixed: Vec<Ghost> = (0..24)
+        .map(|k| Ghost {
+            bell: bells[k % 4].clone(),
+            center: DVec2::new(place(k, 0.754_877_666, 3.6), place(k, 0.569_840_291, 2.0)),
+            // Those that bring a table have one size.
+            size: if k % 4 == 0 { DVec2::new(0.2 + 0.02 * k as f64, 0.3) } else { DVec2::new(0.4, 0.35) },
+            radiance: [1.0, if k % 3 == 0 { -0.5 } else { 0.8 }, place(k, 0.618_033_989, 2.0)],
+        })
+        .collect();
+    for ghosts in [mixed.clone(), mixed[..1].to_vec()] {
+        let (amplitudes, all, period) = amplitudes_of(&ghosts);
+        let (kept, left) = amplitudes.kept(0.2 * ghosts.len() as f64);
+        assert!(kept.len() < all.len() && left > 0.0, "{kept:?}");
+        let off = |point: DVec2| {
+            let [all, kept] = [&all, &kept].map(|counts| reference::series(&ghosts, period, counts, point));
+            (0..3).map(|colour| (all[colour] - kept[colour]).abs()).fold(0.0, f64::max)
+        };
+        let scattered = (0..400).map(|k| DVec2::new(place(k, 0.754_877_666, 8.0), place(k, 0.569_840_291, 6.0)));
+        let worst = scattered.chain(ghosts.iter().map(|ghost| ghost.center)).map(off).fold(0.0, f64::max);
+        assert!(worst <= left * (1.0 + 1e-12), "{worst:e} of {left:e}");
+        let reached = if ghosts.len() == 1 { 0.999_999 } else { 0.1 };
+        assert!(worst >= reached * left, "{worst:e} of {left:e}");
+    }
+}
+
+#[test]
+fn amplitudes_know_which_ghosts_add_up_and_which_cancel() {
+    let total = |ghosts: &[Ghost]| {
+        let (amplitudes, counts, _) = amplitudes_of(ghosts);
+        amplitudes.marginals(&counts)[0].iter().map(|held| held[0]).sum::<f64>()
+    };
+    let one = ghost([0.3, -0.2], [0.3, 0.3]);
+    let alone = total(std::slice::from_ref(&one));
+    assert!((total(&vec![one.clone(); 50]) / alone - 50.0).abs() < 1e-9);
+    let dark = Ghost { radiance: [-1.0; 3], ..one.clone() };
+    assert!(total(&[one.clone(), dark]) < 1e-12 * alone);
+    // Half a period apart, every odd harmonic of x cancels.
+    let apart = Ghost { center: one.center - DVec2::new(4.0, 0.0), ..one.clone() };
+    let (amplitudes, counts, _) = amplitudes_of(&[one, apart]);
+    let held = &amplitudes.marginals(&counts)[0];
+    assert!(held[1][0] < 1e-12 * held[0][0] && held[2][0] > 0.1 * held[0][0], "{held:?}");
+}
+
+#[test]
+fn too_many_ghosts_for_their_modes_are_not_looked_at() {
+    let ghosts = vec![ghost([0.1, 0.1], [0.3, 0.3]); 20_000];
+    let mut survey = Survey::new(&ghosts, &Request::new(Frame::full(64, 36), 1e-3));
+    let counts = terms::rectangle(&mut survey.groups, [12, 8]);
+    assert!(Amplitudes::new(&ghosts, &survey.groups, &counts, DVec2::ONE, [1.0; 3]).is_none());
 }
