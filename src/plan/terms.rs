@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::decay::Decay;
+use super::gather::Transform;
 use super::slots::{Slots, by_chunks};
 use super::weigh::Weighed;
 use crate::Result;
@@ -21,10 +22,14 @@ pub struct Group {
     pub ghosts: usize,
     /// The smallest size in x and in y among them.
     pub smallest: DVec2,
+    /// The largest.
+    pub largest: DVec2,
     /// The sum of their peaks, in units of the field's scale.
     pub weight: f64,
     /// Highest harmonic in x and y that they add to.
     pub degree: [u32; 2],
+    /// How its spectrum comes about.
+    pub transform: Transform,
 }
 
 /// Groups the ghosts that are not dropped: sizes within half an octave share a group, or equal sizes where the bell's
@@ -54,13 +59,23 @@ pub(super) fn group(ghosts: &[Ghost], weighed: &Weighed) -> Vec<Group> {
 
 impl Group {
     fn new(bell: &Bell, size: DVec2) -> Self {
-        Self { bell: bell.clone(), members: Vec::new(), ghosts: 0, smallest: size, weight: 0.0, degree: [0; 2] }
+        Self {
+            bell: bell.clone(),
+            members: Vec::new(),
+            ghosts: 0,
+            smallest: size,
+            largest: size,
+            weight: 0.0,
+            degree: [0; 2],
+            transform: Transform::Dispatch,
+        }
     }
 
     fn add(&mut self, index: u32, size: DVec2, weight: f64) {
         self.members.push(index);
         self.ghosts += 1;
         self.smallest = self.smallest.min(size);
+        self.largest = self.largest.max(size);
         self.weight += weight;
     }
 
@@ -68,6 +83,7 @@ impl Group {
         self.members.extend(&other.members);
         self.ghosts += other.ghosts;
         self.smallest = self.smallest.min(other.smallest);
+        self.largest = self.largest.max(other.largest);
         self.weight += other.weight;
     }
 }

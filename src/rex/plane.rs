@@ -9,7 +9,7 @@ use super::chart::{Axis, Chart, Map, Scalar};
 use super::report::{Field, Figure};
 use crate::Result;
 use crate::frame::Frame;
-use crate::plan::{Evaluator, Group, Plan, Prediction};
+use crate::plan::{Evaluator, Group, Plan, Prediction, Transform};
 use crate::renderer::{Renderer, Settings};
 use crate::scene::Ghost;
 use crate::series::Bell;
@@ -123,8 +123,10 @@ impl Scene {
             members: (0..self.centers.len() as u32).collect(),
             ghosts: self.centers.len(),
             smallest: self.size * canvas.scale,
+            largest: self.size * canvas.scale,
             weight: self.centers.len() as f64,
             degree: self.degree,
+            transform: Transform::Dispatch,
         };
         Plan {
             tolerance: f64::INFINITY,
