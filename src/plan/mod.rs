@@ -16,6 +16,7 @@ mod terms;
 mod weigh;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use crate::frame::Frame;
 use crate::scene::Ghost;
@@ -284,6 +285,9 @@ fn most_helpful(
 /// [`Error::Plan`] where they do not agree.
 fn own_period(ghosts: &[Ghost], request: &Request) -> Result<Option<DVec2>> {
     let mut period = request.period;
+    if !ghosts.par_iter().any(|ghost| ghost.bell.shape().period().is_some()) {
+        return Ok(period);
+    }
     for ghost in ghosts {
         let Some(own) = ghost.bell.shape().period() else { continue };
         let other = *period.get_or_insert(own);

@@ -32,22 +32,25 @@ const PER_DEGREE: f64 = 200.0;
 pub(super) fn bound(ghosts: &[Ghost], weighed: &Weighed, evaluator: Evaluator, degree: u32) -> f64 {
     if evaluator != Evaluator::Direct {
         let growth = 1.0 + f64::from(degree.saturating_sub(SEEN_DEGREE)) / PER_DEGREE;
-        return per_weight(evaluator) * growth * weighed.weights.iter().sum::<f64>().max(1.0);
+        return per_weight(evaluator) * growth * weighed.weight.max(1.0);
     }
     let sums = by_chunks(ghosts, &weighed.weights, |ghosts| -> f64 {
-        ghosts.map(|(index, ghost, weight)| weight * direct(ghost, weighed.nearest[index as usize].abs())).sum()
+        let one = |(index, ghost, weight): (u32, &Ghost, f64)| {
+            let index = index as usize;
+            weight * direct(ghost, weighed.nearest[index].abs(), weighed.shares[index])
+        };
+        ghosts.map(one).sum()
     });
     sums.iter().sum::<f64>().max(per_weight(evaluator))
 }
 
 /// What one bell of peak 1 is off by in the direct sum, at most: unlike a series, it is as small as the bell itself at
-/// the nearest pixel, in which a rounding of the exponent counts as often as the exponent is large.
-fn direct(ghost: &Ghost, nearest: DVec2) -> f64 {
+/// the nearest pixel, its `share`, in which a rounding of the exponent counts as often as the exponent is large.
+fn direct(ghost: &Ghost, nearest: DVec2, share: f64) -> f64 {
     let shape = ghost.bell.shape();
     let along = |distance: f64| shape.along(distance, 1.0);
-    let value = along(nearest.x) * along(nearest.y);
     let shift = PER_CENTER * (ghost.center / ghost.size).abs();
     let shifted =
         shift.x * shape.steepest(nearest.x) * along(nearest.y) + shift.y * shape.steepest(nearest.y) * along(nearest.x);
-    per_weight(Evaluator::Direct) * value * (1.0 + 0.5 * nearest.length_squared()) + shifted.min(1.0)
+    per_weight(Evaluator::Direct) * share * (1.0 + 0.5 * nearest.length_squared()) + shifted.min(1.0)
 }

@@ -3,6 +3,8 @@
 //! The notes count in units of their own, over x from −8 to 8, say. The renderer's frame counts in half picture heights.
 //! A [`Canvas`] turns one into the other, each axis for itself, so that a window may be stretched as the prototype's was.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 
 use super::chart::{Axis, Chart, Map, Scalar};
@@ -120,7 +122,7 @@ impl Scene {
         let counts = vec![self.degree[1] + 1; self.degree[0] as usize + 1];
         let group = Group {
             bell: self.bell.clone(),
-            members: (0..self.centers.len() as u32).collect(),
+            members: Arc::new((0..self.centers.len() as u32).collect()),
             ghosts: self.centers.len(),
             smallest: self.size * canvas.scale,
             largest: self.size * canvas.scale,
