@@ -17,7 +17,7 @@ pub(super) fn of_one_size(stage: &Stage, report: &mut Report, count: usize, sigm
     let width = 2.0 * f64::from(stage.frame.width) / f64::from(stage.frame.height);
     let ghosts = scenes::alike(count, sigma * width, stage.frame);
     let loop_rounds = stage.device().info().loop_rounds().unwrap_or(usize::MAX);
-    let request = Request { loop_rounds, ..Request::new(stage.frame, tolerance) };
+    let request = Request { loop_rounds, cost_model: stage.cost_model, ..Request::new(stage.frame, tolerance) };
     let planned = plan(&ghosts, &request)?;
     let mut actor = stage.actor(stage.frame, &ghosts, &planned)?;
     let certificate = Certificate::measure(actor.renderer(), &ghosts, &planned, stage.frame, tolerance)?;

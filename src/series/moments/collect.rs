@@ -6,8 +6,10 @@ use rayon::prelude::*;
 
 use super::{Cells, Point};
 
-/// Points that one task sorts: as many as a core's cache holds.
+/// Points that one task sorts: as many as a core's cache holds, or so many that there are only this many tasks, because
+/// each has a list of all cells.
 const CHUNK: usize = 1 << 14;
+const MOST_CHUNKS: usize = 64;
 /// A cell with more points than this is several tasks.
 const PIECE: usize = 1 << 14;
 /// Points that are added together, and values of a row of moments that are.
@@ -56,15 +58,18 @@ pub(super) fn row_lanes(cells: &Cells) -> usize {
 
 /// The moments of all cells that have points, row by row of cells.
 pub(super) fn collect(cells: &Cells, count: usize, point: impl Fn(usize) -> Point + Sync) -> Vec<Moments> {
-    let chunks: Vec<Sorted> = (0..count.div_ceil(CHUNK))
+    let length = CHUNK.max(count.div_ceil(MOST_CHUNKS));
+    let chunks: Vec<Sorted> = (0..count.div_ceil(length))
         .into_par_iter()
-        .map(|chunk| sorted(cells, (chunk * CHUNK..count.min((chunk + 1) * CHUNK)).map(&point)))
+        .map(|chunk| sorted(cells, (chunk * length..count.min((chunk + 1) * length)).map(&point)))
         .collect();
     let moments: Vec<Moments> = pieces(cells, &chunks).par_iter().map(|piece| moments(cells, &chunks, piece)).collect();
     let mut joined = Vec::<Moments>::with_capacity(moments.len());
     for one in moments {
         match joined.last_mut().filter(|last| last.cell == one.cell) {
-            Some(last) => last.rows.as_flattened_mut().iter_mut().zip(one.rows.as_flattened()).for_each(|(a, b)| *a += b),
+            Some(last) => {
+                last.rows.as_flattened_mut().iter_mut().zip(one.rows.as_flattened()).for_each(|(a, b)| *a += b)
+            }
             None => joined.push(one),
         }
     }
