@@ -374,7 +374,7 @@ impl Renderer {
                 evaluators.grid(runner, &nodes.tile(), spectrum)?;
             }
         }
-        Ok(convert::source(plan))
+        Ok(convert::source(plan, evaluators.many()))
     }
 }
 

@@ -1,6 +1,7 @@
 //! `vglare bench`: what each pass costs here, as ratios that were measured in one run.
 
 mod cases;
+mod choices;
 mod first;
 mod gaussians;
 mod many;
@@ -56,6 +57,10 @@ pub struct Args {
     /// The tolerance that they are planned for
     #[arg(long, value_name = "E", default_value_t = 1e-3, value_parser = part, requires = "gaussians")]
     tolerance: f64,
+
+    /// Measure nothing but what the plan chooses in this many random scenes, against every other choice
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000), conflicts_with = "gaussians")]
+    scenes: Option<u32>,
 
     /// Write the rows of all tables to this file too
     #[arg(long, value_name = "FILE")]
@@ -136,6 +141,10 @@ fn measure(args: &Args) -> Result<Report> {
     let mut report = Report::new(stage.device().info(), args.size, rounds);
     if let Some(count) = args.gaussians {
         gaussians::of_one_size(&stage, &mut report, count as usize, args.sigma, args.tolerance)?;
+        return Ok(report);
+    }
+    if let Some(count) = args.scenes {
+        choices::of_random_scenes(&stage, &mut report, count)?;
         return Ok(report);
     }
     first::frame(&stage, opened, &mut report)?;

@@ -5,15 +5,19 @@ use bytemuck::Zeroable as _;
 
 use super::harmonics::Harmonics;
 use super::layout::{
-    CELLS, DirectGhost, EVALUATOR, GHOSTS, HARMONICS_X, HARMONICS_Y, Knots, LATTICE, PROFILES, SHAPES, STRIPS,
+    CELLS, DirectGhost, EVALUATOR, FEW_GHOSTS, GHOSTS, HARMONICS_X, HARMONICS_Y, Knots, LATTICE, PROFILES, SHAPES,
+    STRIPS,
 };
 use super::resource::{Buffer, Scratch, Texel};
 use super::runner::Runner;
 use super::spectrum::Spectrum;
 use crate::{Error, Result};
 
-/// `direct` sums this many ghosts in a round of its loop; as in `evaluators/direct.glsl`.
+/// Where there are many ghosts, `direct` sums this many of them in a round of its loop; as in `evaluators/direct.glsl`.
 const STEP: usize = 8;
+/// Ghosts that fit a uniform block, and what such a block must hold for them; as in `evaluators/direct.glsl`.
+const FEW: usize = 2048;
+const FEW_BYTES: u32 = (FEW * size_of::<DirectGhost>()) as u32;
 
 /// A lattice over one tile, and where the tile's pixels lie on it.
 pub(crate) struct LatticeTile<'a> {
@@ -40,6 +44,7 @@ pub(crate) struct Evaluators {
     shapes: Buffer<[f32; 4]>,
     direct: Buffer<[i32; 8]>,
     ghost_count: usize,
+    many: bool,
 }
 
 impl Evaluators {
@@ -53,10 +58,12 @@ impl Evaluators {
             cells: Scratch::default(),
             strips: Scratch::default(),
             knots: Buffer::new(device, 2)?,
-            ghosts: Buffer::new(device, 0)?,
+            // A uniform block's buffer has to be as long as the block.
+            ghosts: Buffer::new(device, FEW)?,
             shapes: Buffer::new(device, 0)?,
             direct: Buffer::new(device, 1)?,
             ghost_count: 0,
+            many: false,
         })
     }
 
@@ -65,10 +72,12 @@ impl Evaluators {
     /// # Errors
     /// [`Error::Gl`] where they are more than the software renderer goes through for one pixel.
     pub fn set_ghosts(&mut self, runner: &Runner, ghosts: &[DirectGhost], shapes: &[[f32; 4]]) -> Result<()> {
+        self.many = ghosts.len() > FEW || runner.device().info().limits.uniform_block < FEW_BYTES;
         // Ghosts without weight fill the last round.
+        let step = if self.many { STEP } else { 1 };
         let mut padded = ghosts.to_vec();
-        padded.resize(ghosts.len().next_multiple_of(STEP), DirectGhost::zeroed());
-        let rounds = padded.len() / STEP + padded.len().div_ceil(64);
+        padded.resize(ghosts.len().next_multiple_of(step), DirectGhost::zeroed());
+        let rounds = padded.len() / step + padded.len().div_ceil(64);
         within_rounds(runner, rounds, "direct", ghosts.len(), "ghosts")?;
         self.ghost_count = padded.len();
         self.shapes.store(shapes)?;
@@ -79,9 +88,18 @@ impl Evaluators {
     pub fn direct(&mut self, corner: [i32; 2], size: [i32; 2]) -> Result<()> {
         self.direct.store(&[[corner[0], corner[1], size[0], size[1], self.ghost_count as i32, 0, 0, 0]])?;
         self.direct.bind_uniform(EVALUATOR);
-        self.ghosts.bind_storage(GHOSTS);
+        if self.many {
+            self.ghosts.bind_storage(GHOSTS);
+        } else {
+            self.ghosts.bind_uniform(FEW_GHOSTS);
+        }
         self.shapes.bind_storage(SHAPES);
         Ok(())
+    }
+
+    /// Whether `direct` has more ghosts than fit a uniform block.
+    pub fn many(&self) -> bool {
+        self.many
     }
 
     /// Readies `series` for pixels at these phases of columns and rows, in 2⁻³² of a period.

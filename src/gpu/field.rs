@@ -12,6 +12,8 @@ pub(crate) struct Source {
     pub evaluator: &'static str,
     /// The file of the bell, or of all bells, that it includes, if any.
     pub bell: Option<&'static str>,
+    /// Whether there are more ghosts than fit a uniform block.
+    pub many_ghosts: bool,
 }
 
 impl Source {
@@ -19,6 +21,9 @@ impl Source {
     pub fn defines(self) -> Vec<(&'static str, &'static str)> {
         let mut defines = vec![("EVALUATOR", self.evaluator)];
         defines.extend(self.bell.map(|bell| ("BELL", bell)));
+        if self.many_ghosts {
+            defines.push(("MANY_GHOSTS", "1"));
+        }
         defines
     }
 }

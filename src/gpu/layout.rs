@@ -14,6 +14,9 @@ pub(crate) const PASS: Binding = ("BINDING_PASS", 0);
 pub(crate) const EVALUATOR: Binding = ("BINDING_EVALUATOR", 1);
 pub(crate) const SAMPLES: Binding = ("BINDING_SAMPLES", 2);
 
+/// Ghosts that fit a uniform block.
+pub(crate) const FEW_GHOSTS: Binding = ("BINDING_FEW_GHOSTS", 3);
+
 /// Shader storage blocks.
 pub(crate) const GHOSTS: Binding = ("BINDING_GHOSTS", 0);
 pub(crate) const PARTIALS: Binding = ("BINDING_PARTIALS", 1);
@@ -49,10 +52,11 @@ pub(crate) const RADIAL: Binding = ("UNIT_RADIAL", 12);
 pub(crate) const FOLDED: Binding = ("UNIT_FOLDED", 13);
 
 /// Every binding, for the head of every shader.
-pub(crate) const BINDINGS: [Binding; 26] = [
+pub(crate) const BINDINGS: [Binding; 27] = [
     PASS,
     EVALUATOR,
     SAMPLES,
+    FEW_GHOSTS,
     GHOSTS,
     PARTIALS,
     SPECTRUM,

@@ -3,12 +3,14 @@
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
-use bytemuck::Pod;
+use bytemuck::{Pod, Zeroable as _};
 
 use super::composite::Composite;
 use super::context::{Backend, Device};
 use super::harmonics::Harmonics;
-use super::layout::{Binding, DirectGhost, EVALUATOR, GHOSTS, HARMONICS_X, Knots, PARTIALS, PASS, SpectralGhost};
+use super::layout::{
+    Binding, DirectGhost, EVALUATOR, FEW_GHOSTS, GHOSTS, HARMONICS_X, Knots, PARTIALS, PASS, SpectralGhost,
+};
 use super::resource::Buffer;
 use super::runner::Runner;
 use super::shader::{self, Program};
@@ -85,6 +87,13 @@ fn ghosts(path: &str, fields: fn(&str) -> Vec<String>) -> View {
     }
 }
 
+/// The view of the same ghosts in a uniform block.
+fn few_ghosts(path: &str, fields: fn(&str) -> Vec<String>) -> View {
+    let block = declaration(path, "layout(std140, binding = BINDING_FEW_GHOSTS)");
+    let many = ghosts(path, fields);
+    View { declarations: vec![many.declarations[0].clone(), block], uniform: true, binding: FEW_GHOSTS, ..many }
+}
+
 fn bits(values: &[f32]) -> Vec<u32> {
     values.iter().map(|value| value.to_bits()).collect()
 }
@@ -119,7 +128,7 @@ fn shaders_read_direct_ghosts_as_they_are_written() {
         (DirectGhost { center, inverse_size, weight, bell }, expected)
     };
     let ([first, second], [a, b]) = ([ghost(0).0, ghost(1).0], [ghost(0).1, ghost(1).1]);
-    let view = ghosts("evaluators/direct.glsl", |ghost| {
+    let fields = |ghost: &str| {
         let colour = |name: &str| format!("floatBitsToUint({ghost}.{name})");
         [
             components(&format!("{ghost}.center"), 2, true),
@@ -127,8 +136,14 @@ fn shaders_read_direct_ghosts_as_they_are_written() {
             vec![colour("red"), colour("green"), colour("blue"), format!("{ghost}.bell")],
         ]
         .concat()
+    };
+    // A uniform block's buffer has to be as long as the block.
+    let few: Vec<DirectGhost> = [first, second].into_iter().chain([DirectGhost::zeroed(); 2046]).collect();
+    on_each_backend(|device| {
+        let expected = [a.clone(), b.clone()].concat();
+        assert_eq!(ghosts("evaluators/direct.glsl", fields).echo(device, &[first, second]), expected);
+        assert_eq!(few_ghosts("evaluators/direct.glsl", fields).echo(device, &few), expected);
     });
-    on_each_backend(|device| assert_eq!(view.echo(device, &[first, second]), [a.clone(), b.clone()].concat()));
 }
 
 #[test]

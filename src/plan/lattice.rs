@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec2;
 
 use super::Plan;
+use super::amplitudes::{Rgb, largest};
 use super::decay::Decay;
 use crate::frame::Frame;
 use crate::series::spline_error;
@@ -31,14 +32,48 @@ pub struct Lattice {
     pub error: f64,
 }
 
-/// What each harmonic along one axis may hold, over all groups, relative to the field's largest value.
-struct Marginal(Vec<f64>);
+/// What each harmonic along each axis may hold, relative to the field's largest value.
+pub(super) struct Marginals([Vec<Rgb>; 2]);
 
-impl Marginal {
-    /// A bound of the interpolation's error along the axis, with θ from node to node for the first harmonic.
-    fn error(&self, theta: f64) -> f64 {
-        let harmonics = (1..).zip(self.0.iter().skip(1));
-        harmonics.map(|(n, held)| held * spline_error(f64::from(n) * theta)).sum()
+impl Marginals {
+    /// Known from the amplitudes of all modes.
+    pub fn of(held: [Vec<Rgb>; 2]) -> Self {
+        Self(held)
+    }
+
+    /// As if all ghosts stood at one place.
+    pub fn by_weights(plan: &Plan) -> Self {
+        let mut sums = plan.degree.map(|degree| vec![0.0; degree as usize + 1]);
+        for group in &plan.groups {
+            let held = Decay::new(group, plan.period).marginals(group.degree);
+            for (sums, held) in sums.iter_mut().zip(held) {
+                for (sum, held) in sums.iter_mut().zip(held) {
+                    *sum += group.weight * held;
+                }
+            }
+        }
+        Self(sums.map(|sums| sums.into_iter().map(|sum| [sum; 3]).collect()))
+    }
+
+    /// A bound of the interpolation's error along an axis, with θ from node to node for the first harmonic.
+    fn error(&self, axis: usize, theta: f64) -> f64 {
+        let harmonics = (1..).zip(self.0[axis].iter().skip(1));
+        let sum = harmonics.fold([0.0; 3], |sum, (n, held)| {
+            let error = spline_error(f64::from(n) * theta);
+            [0, 1, 2].map(|colour| sum[colour] + held[colour] * error)
+        });
+        largest(sum)
+    }
+
+    /// The fewest nodes a half wave of the highest harmonic along an axis within the budget.
+    fn least(&self, axis: usize, degree: u32, budget: f64) -> f64 {
+        let (mut low, mut high) = (SPARSEST, DENSEST);
+        for _ in 0..30 {
+            let middle = 0.5 * (low + high);
+            let theta = PI / (middle * f64::from(degree.max(1)));
+            if self.error(axis, theta) > budget { low = middle } else { high = middle }
+        }
+        high
     }
 }
 
@@ -47,17 +82,22 @@ impl Marginal {
 /// # Errors
 /// [`Error::Plan`] where it would have more than [`MOST_NODES`] along an axis, or where the oversampling is too little
 /// for a spline.
-pub(super) fn coarsest(plan: &Plan, frame: Frame, oversampling: Option<f64>, budget: f64) -> Result<Lattice> {
+pub(super) fn coarsest(
+    plan: &Plan,
+    marginals: &Marginals,
+    frame: Frame,
+    oversampling: Option<f64>,
+    budget: f64,
+) -> Result<Lattice> {
     if let Some(nodes) = oversampling.filter(|nodes| !(SPARSEST..=f64::MAX).contains(nodes)) {
         return Err(Error::Plan(format!("{nodes} nodes a half wave are fewer than {SPARSEST}")));
     }
     let (low, high) = frame.bounds();
     let extent = high - low;
-    let marginals = marginals(plan);
     // The other axis adds about as much, and their product a little.
     let part = 0.49 * budget;
     let along = |axis: usize, period: f64, extent: f64| {
-        let over = oversampling.unwrap_or_else(|| least(&marginals[axis], plan.degree[axis], part));
+        let over = oversampling.unwrap_or_else(|| marginals.least(axis, plan.degree[axis], part));
         step(plan.degree[axis], period, extent, over)
     };
     let (step_x, over_x) = along(0, plan.period.x, extent.x);
@@ -72,32 +112,8 @@ pub(super) fn coarsest(plan: &Plan, frame: Frame, oversampling: Option<f64>, bud
         )));
     }
     let theta = TAU * step / plan.period;
-    let (x, y) = (marginals[0].error(theta.x), marginals[1].error(theta.y));
+    let (x, y) = (marginals.error(0, theta.x), marginals.error(1, theta.y));
     Ok(Lattice { step, nodes, oversampling: DVec2::new(over_x, over_y), error: x + y + x * y })
-}
-
-fn marginals(plan: &Plan) -> [Marginal; 2] {
-    let mut sums = plan.degree.map(|degree| vec![0.0; degree as usize + 1]);
-    for group in &plan.groups {
-        let held = Decay::new(group, plan.period).marginals(group.degree);
-        for (sums, held) in sums.iter_mut().zip(held) {
-            for (sum, held) in sums.iter_mut().zip(held) {
-                *sum += group.weight * held;
-            }
-        }
-    }
-    sums.map(Marginal)
-}
-
-/// The fewest nodes a half wave of the highest harmonic along an axis within the budget.
-fn least(marginal: &Marginal, degree: u32, budget: f64) -> f64 {
-    let (mut low, mut high) = (SPARSEST, DENSEST);
-    for _ in 0..30 {
-        let middle = 0.5 * (low + high);
-        let theta = PI / (middle * f64::from(degree.max(1)));
-        if marginal.error(theta) > budget { low = middle } else { high = middle }
-    }
-    high
 }
 
 /// The step from node to node for so many nodes a half wave of the highest harmonic, and these.

@@ -3,6 +3,7 @@
 //! Pure: ghosts, a picture's size and a tolerance decide everything. The error is split by its sources, each with its
 //! bound; docs/accuracy.md says where each comes from.
 
+mod amplitudes;
 mod check;
 mod cost;
 mod decay;
@@ -11,6 +12,7 @@ mod lattice;
 mod period;
 mod rounding;
 mod search;
+mod series;
 mod slots;
 mod terms;
 mod weigh;
@@ -29,6 +31,7 @@ pub use search::{LOOSEST, plan_at_least, plan_within};
 pub use terms::Group;
 
 use period::Reach;
+use series::Wide;
 use weigh::Weighed;
 
 /// Highest harmonic that a plan may use along one axis.
@@ -220,11 +223,12 @@ pub fn plan(ghosts: &[Ghost], asked: &Request) -> Result<Plan> {
         Some(only) => only == evaluator,
         None => !(series && evaluator == Evaluator::Direct),
     };
+    let wide = Wide::new(ghosts, &survey, request);
     let mut candidates = Vec::new();
     let mut refusals = Vec::new();
     let wanted: Vec<Evaluator> = Evaluator::ALL.into_iter().filter(|&evaluator| wanted(evaluator)).collect();
     for &evaluator in &wanted {
-        match candidate(ghosts, &survey, request, evaluator) {
+        match candidate(ghosts, &survey, wide.as_ref(), request, evaluator) {
             // In the period that periodic bells bring with them the copies of others may land on the picture.
             Ok(plan) if !series && plan.predicted.total() > request.tolerance => {
                 let total = plan.predicted.total();
@@ -269,7 +273,7 @@ fn most_helpful(
     // A series may be refused at its floor for another reason, its degree; what is left is the next floor.
     while let Some(floor) = next.filter(|floor| *floor < 0.99) {
         let eased = Request { tolerance: 1.0001 * floor, ..*request };
-        let tried = wanted.iter().map(|&evaluator| candidate(ghosts, survey, &eased, evaluator));
+        let tried = wanted.iter().map(|&evaluator| candidate(ghosts, survey, None, &eased, evaluator));
         let (plans, others): (Vec<_>, Vec<_>) = tried.partition(Result::is_ok);
         if plans.iter().flatten().any(|plan| plan.predicted.total() <= eased.tolerance) {
             return Error::ToleranceBelowFloor { asked: request.tolerance, floor };
@@ -318,12 +322,18 @@ impl Survey {
 }
 
 /// The plan that one evaluator asks for.
-fn candidate(ghosts: &[Ghost], survey: &Survey, request: &Request, evaluator: Evaluator) -> Result<Plan> {
+fn candidate(
+    ghosts: &[Ghost],
+    survey: &Survey,
+    wide: Option<&Wide>,
+    request: &Request,
+    evaluator: Evaluator,
+) -> Result<Plan> {
     // What rounding costs depends on the degree, and the degree on what rounding leaves of the tolerance.
     let mut degree = request.degree.map_or(rounding::SEEN_DEGREE, |[n, m]| n.max(m));
     loop {
-        let rounding = rounding::bound(ghosts, &survey.weighed, evaluator, degree);
-        let plan = with_rounding(rounding, survey, request, evaluator)?;
+        let rounding = rounding::bound(ghosts, &survey.weighed, request.frame, evaluator, degree);
+        let plan = with_rounding(rounding, survey, wide, request, evaluator)?;
         let needed = plan.degree[0].max(plan.degree[1]);
         if evaluator == Evaluator::Direct || needed <= degree {
             return Ok(plan);
@@ -333,7 +343,13 @@ fn candidate(ghosts: &[Ghost], survey: &Survey, request: &Request, evaluator: Ev
 }
 
 /// The plan of one evaluator that rounding costs so much.
-fn with_rounding(rounding: f64, survey: &Survey, request: &Request, evaluator: Evaluator) -> Result<Plan> {
+fn with_rounding(
+    rounding: f64,
+    survey: &Survey,
+    wide: Option<&Wide>,
+    request: &Request,
+    evaluator: Evaluator,
+) -> Result<Plan> {
     let weighed = &survey.weighed;
     // With the whole of the series given, there is nothing left to plan: the error is predicted as it comes.
     let between = evaluator != Evaluator::Grid || request.oversampling.is_some();
@@ -359,7 +375,7 @@ fn with_rounding(rounding: f64, survey: &Survey, request: &Request, evaluator: E
         refused: Vec::new(),
     };
     if evaluator != Evaluator::Direct {
-        plan_series(&mut plan, &survey.reaches, request, usable)?;
+        series::plan_series(&mut plan, survey, wide, request, usable)?;
     }
     // `direct` takes eight ghosts a round, and a few rounds more to gather them.
     let rounds = match evaluator {
@@ -372,64 +388,6 @@ fn with_rounding(rounding: f64, survey: &Survey, request: &Request, evaluator: E
     }
     plan.costs = vec![cost::estimate(&plan, request)];
     Ok(plan)
-}
-
-fn plan_series(plan: &mut Plan, reaches: &[Reach], request: &Request, usable: f64) -> Result<()> {
-    plan.period = match request.period {
-        Some(period) => period,
-        None => period::shortest(reaches, usable * share::PERIODISATION),
-    };
-    plan.predicted.periodisation = period::error(reaches, plan.period);
-    if plan.evaluator != Evaluator::Grid {
-        plan_terms(plan, request, usable * share::TRUNCATION)?;
-        gather::choose(plan, request);
-        return Ok(());
-    }
-    let mut cheapest: Option<(f64, Plan)> = None;
-    let mut refusal = None;
-    for (truncation, interpolation) in share::GRID {
-        match with_lattice(plan.clone(), request, usable * truncation, usable * interpolation) {
-            Ok(plan) => {
-                let cost = cost::estimate(&plan, request).milliseconds;
-                if cheapest.as_ref().is_none_or(|(least, _)| cost < *least) {
-                    cheapest = Some((cost, plan));
-                }
-            }
-            Err(error) => refusal = Some(error),
-        }
-    }
-    match (cheapest, refusal) {
-        (Some((_, cheapest)), _) => *plan = cheapest,
-        (None, Some(refusal)) => return Err(refusal),
-        (None, None) => {}
-    }
-    Ok(())
-}
-
-/// The plan with terms and a lattice, each within its part of the tolerance.
-fn with_lattice(mut plan: Plan, request: &Request, truncation: f64, interpolation: f64) -> Result<Plan> {
-    plan_terms(&mut plan, request, truncation)?;
-    let lattice = lattice::coarsest(&plan, request.frame, request.oversampling, interpolation)?;
-    plan.predicted.interpolation = lattice.error;
-    plan.lattice = Some(lattice);
-    gather::choose(&mut plan, request);
-    Ok(plan)
-}
-
-/// Chooses the kept terms within a part of the tolerance.
-fn plan_terms(plan: &mut Plan, request: &Request, truncation: f64) -> Result<()> {
-    plan.counts = match request.degree {
-        Some(degree) => terms::rectangle(&mut plan.groups, degree),
-        None => terms::fewest(&mut plan.groups, plan.period, truncation)?,
-    };
-    plan.terms = plan.counts.iter().map(|&count| count as usize).sum();
-    if plan.terms > request.most_terms {
-        let most = request.most_terms;
-        return Err(Error::Plan(format!("the series would have {} terms, and {most} fit on the device", plan.terms)));
-    }
-    plan.degree = [plan.counts.len() as u32 - 1, plan.counts[0] - 1];
-    plan.predicted.truncation = terms::error(&plan.groups, plan.period, &plan.counts);
-    Ok(())
 }
 
 #[cfg(test)]

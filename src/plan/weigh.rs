@@ -28,8 +28,6 @@ pub(super) struct Weighed {
     pub weights: Vec<f64>,
     /// The sum of the weights.
     pub weight: f64,
-    /// For each ghost what a bell of peak 1 is at most at any pixel.
-    pub shares: Vec<f64>,
     /// For each ghost how far the nearest pixel is from its centre, in sizes.
     pub nearest: Vec<DVec2>,
     /// How many are dropped, and at most how much that changes at any pixel.
@@ -55,7 +53,7 @@ pub(super) fn weigh(ghosts: &[Ghost], request: &Request) -> Weighed {
     let (mut weights, reached): (Vec<f64>, Vec<f64>) = ghosts.par_iter().zip(&shares).map(weighed).unzip();
     let (dropped, dropped_error) = drop_faint(&mut weights, &reached, share::DROPPED * request.tolerance);
     let weight = weights.iter().sum();
-    Weighed { scale, peaks, weights, weight, shares, nearest, dropped, dropped_error }
+    Weighed { scale, peaks, weights, weight, nearest, dropped, dropped_error }
 }
 
 /// The unit of each colour: the largest value found.

@@ -11,13 +11,16 @@ use crate::scene::Ghost;
 use crate::series::moments::{Cells, Point, Sums};
 use crate::series::{Bell, phase};
 
-/// The GLSL function that a plan's evaluator has readied.
-pub(super) fn source(plan: &Plan) -> Source {
+/// The GLSL function that a plan's evaluator has readied; for `direct` there may be too many ghosts for a uniform block.
+pub(super) fn source(plan: &Plan, many_ghosts: bool) -> Source {
+    let series = |evaluator| Source { evaluator, bell: None, many_ghosts: false };
     match plan.evaluator {
-        Evaluator::Direct => Source { evaluator: "\"evaluators/direct.glsl\"", bell: Some(bell_file(plan)) },
-        Evaluator::Series => Source { evaluator: "\"evaluators/series.glsl\"", bell: None },
-        Evaluator::Rows => Source { evaluator: "\"evaluators/rows.glsl\"", bell: None },
-        Evaluator::Grid => Source { evaluator: "\"evaluators/grid.glsl\"", bell: None },
+        Evaluator::Direct => {
+            Source { evaluator: "\"evaluators/direct.glsl\"", bell: Some(bell_file(plan)), many_ghosts }
+        }
+        Evaluator::Series => series("\"evaluators/series.glsl\""),
+        Evaluator::Rows => series("\"evaluators/rows.glsl\""),
+        Evaluator::Grid => series("\"evaluators/grid.glsl\""),
     }
 }
 

@@ -10,14 +10,13 @@ use super::stage::{Arm, Stage};
 use crate::Result;
 use crate::certificate::Certificate;
 use crate::measure::interleave;
-use crate::plan::{Request, plan};
+use crate::plan::plan;
 
 /// Plans, then measures the spectrum and the field, each as a whole.
 pub(super) fn of_one_size(stage: &Stage, report: &mut Report, count: usize, sigma: f64, tolerance: f64) -> Result<()> {
     let width = 2.0 * f64::from(stage.frame.width) / f64::from(stage.frame.height);
     let ghosts = scenes::alike(count, sigma * width, stage.frame);
-    let loop_rounds = stage.device().info().loop_rounds().unwrap_or(usize::MAX);
-    let request = Request { loop_rounds, cost_model: stage.cost_model, ..Request::new(stage.frame, tolerance) };
+    let request = stage.request(stage.frame, tolerance);
     let planned = plan(&ghosts, &request)?;
     let mut actor = stage.actor(stage.frame, &ghosts, &planned)?;
     let certificate = Certificate::measure(actor.renderer(), &ghosts, &planned, stage.frame, tolerance)?;

@@ -29,6 +29,9 @@ pub(super) struct Table {
     /// What the ratios are to.
     yardstick: &'static str,
     rows: Vec<Row>,
+    /// How many rows are printed.
+    #[serde(skip)]
+    shown: usize,
 }
 
 #[derive(Serialize)]
@@ -92,7 +95,13 @@ impl Bar {
 
 impl Table {
     pub fn new(title: impl Into<String>, yardstick: &'static str) -> Self {
-        Self { title: title.into(), note: None, yardstick, rows: Vec::new() }
+        Self { title: title.into(), note: None, yardstick, rows: Vec::new(), shown: usize::MAX }
+    }
+
+    /// Prints the first rows only.
+    pub fn shown(mut self, rows: usize) -> Self {
+        self.shown = rows;
+        self
     }
 
     pub fn note(mut self, note: impl Into<String>) -> Self {
@@ -117,7 +126,7 @@ impl Table {
         table.load_style(presets::NOTHING);
         let ratio = format!("× {}", self.yardstick);
         table.set_header(["", "wall ms", "least", "most", "GPU ms", &ratio, "in pairs"]);
-        for Row { what, wall_ms, least_ms, most_ms, gpu_ms, ratio } in &self.rows {
+        for Row { what, wall_ms, least_ms, most_ms, gpu_ms, ratio } in self.rows.iter().take(self.shown) {
             let optional = |value: Option<f64>| value.map_or("-".to_owned(), short);
             let [of_medians, paired] =
                 [ratio.map(|ratio| ratio.of_medians), ratio.map(|ratio| ratio.paired)].map(optional);
@@ -255,6 +264,7 @@ mod tests {
                 texture_size: 0,
                 viewport: [0; 2],
                 storage_block: 0,
+                uniform_block: 0,
                 storage_bindings: 0,
                 work_groups: [0; 3],
                 work_group_invocations: 0,

@@ -6,7 +6,7 @@ use crate::Result;
 use crate::frame::Frame;
 use crate::gpu::{Device, PassTime};
 use crate::measure::{Rounds, Samples};
-use crate::plan::{CostModel, Plan};
+use crate::plan::{CostModel, Plan, Request};
 use crate::renderer::{Renderer, Settings};
 use crate::scene::Ghost;
 
@@ -45,6 +45,12 @@ impl Stage {
 
     pub fn device(&self) -> &Device {
         &self.device
+    }
+
+    /// What is asked of a plan whose choices are to be measured here.
+    pub fn request(&self, frame: Frame, tolerance: f64) -> Request {
+        let loop_rounds = self.device.info().loop_rounds().unwrap_or(usize::MAX);
+        Request { loop_rounds, cost_model: self.cost_model, ..Request::new(frame, tolerance) }
     }
 
     /// Whether the device's timer tells the truth. Mesa's software renderer leaves out what compute shaders do.

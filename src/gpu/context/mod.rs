@@ -95,6 +95,8 @@ pub struct Limits {
     pub viewport: [u32; 2],
     /// Largest shader storage block, bytes.
     pub storage_block: u64,
+    /// Largest uniform block, bytes.
+    pub uniform_block: u32,
     /// Shader storage bindings of one program.
     pub storage_bindings: u32,
     /// Work groups of one dispatch, per axis.
@@ -196,6 +198,7 @@ fn describe(gl: &glow::Context, backend: Backend, route: String) -> Info {
             texture_size: number(glow::MAX_TEXTURE_SIZE),
             viewport: viewport.map(|side| side.max(0) as u32),
             storage_block: unsafe { gl.get_parameter_i64(glow::MAX_SHADER_STORAGE_BLOCK_SIZE) }.max(0) as u64,
+            uniform_block: number(glow::MAX_UNIFORM_BLOCK_SIZE),
             storage_bindings: number(glow::MAX_SHADER_STORAGE_BUFFER_BINDINGS),
             work_groups: [0, 1, 2].map(|axis| indexed(glow::MAX_COMPUTE_WORK_GROUP_COUNT, axis)),
             work_group_invocations: number(glow::MAX_COMPUTE_WORK_GROUP_INVOCATIONS),
