@@ -45,6 +45,22 @@ pub enum Error {
     #[error("the glare is off by {measured:.1e} of its largest value, and {asked:.1e} was asked")]
     ToleranceMissed { asked: f64, measured: f64 },
 
+    /// One photo of several could not be done.
+    #[error("{}: {error}", path.display())]
+    Frame { path: PathBuf, error: Box<Error> },
+
+    /// Several photos were done, but not all; each error has been told.
+    #[error("{failed} of {frames} photos could not be done")]
+    Frames { failed: usize, frames: usize, first: Box<Error> },
+
+    /// Of several photos, some have glare that is further from the truth than was asked.
+    #[error(
+        "the glare of {missed} of {frames} photos is further off than was asked; {} is the worst, with {measured:.1e} \
+         of its largest value, and {asked:.1e} was asked",
+        worst.display()
+    )]
+    FramesMissed { missed: usize, frames: usize, worst: PathBuf, measured: f64, asked: f64 },
+
     /// What was asked of the plan cannot be had.
     #[error("no plan: {0}")]
     Plan(String),
@@ -75,13 +91,23 @@ impl Error {
     /// tolerance or the budget cannot be or was not met, 4 where there is no OpenGL. (clap's own usage errors exit with 2 as well.)
     pub fn exit_code(&self) -> u8 {
         match self {
+            Self::Frame { error, .. } | Self::Frames { first: error, .. } => error.exit_code(),
             Self::UnknownPreset { .. } | Self::Usage(_) => 2,
             Self::ToleranceBelowFloor { .. }
             | Self::BudgetTooSmall { .. }
             | Self::ToleranceMissed { .. }
+            | Self::FramesMissed { .. }
             | Self::Missed { .. } => 3,
             Self::NoContext { .. } => 4,
             _ => 1,
+        }
+    }
+
+    /// The error of one photo of several, with its name unless the text has it already.
+    pub(crate) fn in_frame(self, path: &Path) -> Self {
+        match self {
+            Self::ReadPhoto { .. } | Self::Write { .. } | Self::Exists { .. } => self,
+            error => Self::Frame { path: path.to_owned(), error: Box::new(error) },
         }
     }
 

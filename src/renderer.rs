@@ -13,6 +13,7 @@
 //! ```
 
 mod convert;
+mod exchange;
 mod graf;
 mod settings;
 mod tiles;
@@ -34,6 +35,8 @@ use crate::plan::{Evaluator, Plan, Transform};
 use crate::scene::Ghost;
 use crate::{Error, Result};
 
+use exchange::Exchange;
+pub use exchange::Pending;
 pub use graf::{GrafRenderer, GrafScene};
 pub use settings::{Normalize, Settings};
 
@@ -46,6 +49,7 @@ pub struct Renderer {
     range: RangePass,
     composite: CompositePass,
     copy: CopyPass,
+    exchange: Exchange,
     scene: Option<(Vec<Ghost>, Plan)>,
     /// Room for the next scene's ghosts.
     room: Vec<Ghost>,
@@ -66,6 +70,8 @@ impl Renderer {
             range: RangePass::new(&runner)?,
             composite: CompositePass::new(&runner)?,
             copy: CopyPass::default(),
+            // The software renderer's memory is the photo's own: there a buffer is one more copy.
+            exchange: Exchange::new(!device.info().software),
             scene: None,
             room: Vec::new(),
             tile_pixels: tiles::PIXELS,
@@ -161,33 +167,29 @@ impl Renderer {
     /// # Errors
     /// [`Error::Gl`] where the driver refuses, or where there is no scene.
     pub fn composite(&mut self, frame: Frame, pixels: &mut [[f32; 4]], settings: &Settings) -> Result<()> {
-        let uniforms = self.start(frame, settings)?;
-        let stride = frame.window.width as usize;
-        assert_eq!(pixels.len(), frame.window.pixels(), "as many pixels as the window has");
-        for tile in self.tiles(frame.window) {
-            let source = self.evaluate(frame, tile)?;
-            let at = offset(frame.window, tile);
-            let photo = self.composite.photo(&self.runner, tile.width, tile.height)?;
-            self.runner.run("upload", || photo.write(&pixels[at..], stride, tile.width, tile.height));
-            let picture = self.composite.draw(&self.runner, convert::variant(source, settings), &uniforms)?;
-            self.runner.run("readback", || picture.read(&mut pixels[at..], stride, tile.width, tile.height));
-            self.runner.device().check("compositing")?;
-        }
-        Ok(())
+        let pending = self.submit(frame, pixels, settings)?;
+        self.collect(pending, pixels)
     }
 
-    /// Puts the photo of a frame that is small enough for one tile on the device, for [`Renderer::draw`].
+    /// Begins what [`Renderer::composite`] does. Until [`Renderer::collect`] has been given the same pixels, some of
+    /// them may still be without glare: with pixel buffers, the last tile is on its way while the CPU goes on.
     ///
     /// # Errors
-    /// [`Error::Gl`] where the frame is too large for one tile, or the driver refuses.
-    pub fn load(&mut self, frame: Frame, pixels: &[[f32; 4]]) -> Result<()> {
+    /// [`Error::Gl`] where the driver refuses, or where there is no scene.
+    pub fn submit(&mut self, frame: Frame, pixels: &mut [[f32; 4]], settings: &Settings) -> Result<Pending> {
+        let uniforms = self.start(frame, settings)?;
         assert_eq!(pixels.len(), frame.window.pixels(), "as many pixels as the window has");
-        let &[tile] = &self.tiles(frame.window)[..] else {
-            return Err(Error::Gl("the picture does not fit one tile".into()));
-        };
-        let photo = self.composite.photo(&self.runner, tile.width, tile.height)?;
-        self.runner.run("upload", || photo.write(pixels, tile.width as usize, tile.width, tile.height));
-        Ok(())
+        let mut pending = Pending::default();
+        for tile in self.tiles(frame.window) {
+            let source = self.evaluate(frame, tile)?;
+            self.upload(frame, tile, pixels)?;
+            self.composite.draw(&self.runner, convert::variant(source, settings), &uniforms)?;
+            // The tile before this one has come back while this one was drawn.
+            let before = std::mem::replace(&mut pending, self.read_back(frame, tile, pixels)?);
+            self.collect(before, pixels)?;
+            self.runner.device().check("compositing")?;
+        }
+        Ok(pending)
     }
 
     /// Draws the loaded photo with its glare and leaves the picture on the device. Does not wait for it.

@@ -2,6 +2,7 @@
 
 mod cases;
 mod choices;
+mod exchange;
 mod first;
 mod gaussians;
 mod many;
@@ -154,6 +155,7 @@ fn measure(args: &Args) -> Result<Report> {
         cases::rows_and_series(&stage, &mut report)?;
     }
     cases::passes(&stage, &mut report, args.quick)?;
+    exchange::ways(&stage, &mut report)?;
     Ok(report)
 }
 

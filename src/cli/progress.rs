@@ -58,6 +58,11 @@ impl Progress {
         self.bar.set_message(what);
     }
 
+    /// Takes the line away while `print` prints.
+    pub fn aside<T>(&self, print: impl FnOnce() -> T) -> T {
+        self.bar.suspend(print)
+    }
+
     /// Says what goes on now, and how much of all is done, from 0 to 1.
     pub fn part(&self, what: impl Into<Cow<'static, str>>, done: f64) {
         if self.bar.length().is_none() {

@@ -87,20 +87,21 @@ impl Files {
 
     /// The scene of a photo. The photo is searched for lights where neither file lists any, unless the scene file lists
     /// ghosts only; or where the search is needed anyway, for the threshold.
-    pub fn gather(self, photo: &Photo, args: &FindArgs, anyway: bool) -> Gathered {
-        let scene = self.scene.unwrap_or_default();
-        let listed = self.lights.or_else(|| (!scene.lights.is_empty()).then_some(scene.lights));
+    pub fn gather(&self, photo: &Photo, args: &FindArgs, anyway: bool) -> Gathered {
+        let nothing = SceneFile::default();
+        let scene = self.scene.as_ref().unwrap_or(&nothing);
+        let listed = self.lights.as_ref().or((!scene.lights.is_empty()).then_some(&scene.lights));
         let ghosts_only = !scene.ghosts.is_empty() && scene.lens_ghosts.is_empty();
         let search = listed.is_none() && !ghosts_only;
         let found = (search || anyway).then(|| find(photo, args));
         let lights = match (listed, &found) {
-            (Some(listed), _) => listed,
+            (Some(listed), _) => listed.clone(),
             (None, Some(found)) if search => found.lights.clone(),
             _ => Vec::new(),
         };
         let mut ghosts = scene::ghosts(&lights, &self.lens);
-        ghosts.extend(scene.ghosts);
-        let lens = (!lights.is_empty()).then_some(self.lens);
+        ghosts.extend_from_slice(&scene.ghosts);
+        let lens = (!lights.is_empty()).then(|| self.lens.clone());
         Gathered { found, lights, lens, ghosts, period: scene.period, degree: scene.degree }
     }
 }

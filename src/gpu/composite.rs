@@ -70,6 +70,11 @@ impl CompositePass {
         self.photo.current().ok_or_else(|| Error::Gl("no photo is loaded".into()))
     }
 
+    /// What was last drawn.
+    pub fn drawn(&self) -> Result<&Texture> {
+        self.picture.current().ok_or_else(|| Error::Gl("nothing is drawn".into()))
+    }
+
     /// The tile that [`CompositePass::photo`] holds, with its glare.
     pub fn draw(&mut self, runner: &Runner, variant: Variant, settings: &Composite) -> Result<&Texture> {
         let photo = self.loaded()?;

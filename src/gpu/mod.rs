@@ -5,6 +5,7 @@
 //! | `context` | a device: EGL without a window, or OSMesa |
 //! | `layout` | what Rust and GLSL must agree on |
 //! | `resource`, `shader` | GL objects that free themselves; shaders put together from `shaders/` |
+//! | `pixels` | pixel buffers: pictures on their way in and out while the device works |
 //! | `runner`, `timer` | runs passes and times them |
 //! | `spectrum` | ghosts → A, B, C, D |
 //! | `harmonics`, `evaluators` | spectrum → the function `glare(pixel)` of each evaluator |
@@ -25,6 +26,7 @@ pub(crate) mod graf;
 mod harmonics;
 pub(crate) mod layout;
 pub(crate) mod lines;
+pub(crate) mod pixels;
 pub mod precision;
 pub(crate) mod range;
 pub(crate) mod resource;

@@ -8,6 +8,7 @@ use glow::{HasContext as _, PixelPackData, PixelUnpackData};
 
 use super::context::Device;
 use super::layout::{Binding, WORKBENCH};
+use super::pixels::PixelBuffer;
 use crate::{Error, Result};
 
 fn refused(what: &str) -> impl FnOnce(String) -> Error {
@@ -258,59 +259,66 @@ impl Texture {
 
     /// Fills the top left of the texture from rows of `stride` RGBA pixels.
     pub fn write(&self, pixels: &[[f32; 4]], stride: usize, width: u32, height: u32) {
-        assert_eq!(self.texel, Texel::Rgba);
         assert!(pixels.len() >= (height as usize - 1) * stride + width as usize && width as usize <= stride);
         let gl = self.device.gl();
-        self.bind(WORKBENCH);
         unsafe {
             gl.bind_buffer(glow::PIXEL_UNPACK_BUFFER, None);
             gl.pixel_store_i32(glow::UNPACK_ROW_LENGTH, stride as i32);
-            gl.tex_sub_image_2d(
-                glow::TEXTURE_2D,
-                0,
-                0,
-                0,
-                width as i32,
-                height as i32,
-                glow::RGBA,
-                glow::FLOAT,
-                PixelUnpackData::Slice(Some(bytemuck::cast_slice(pixels))),
-            );
+            self.write_raw(PixelUnpackData::Slice(Some(bytemuck::cast_slice(pixels))), width, height);
             gl.pixel_store_i32(glow::UNPACK_ROW_LENGTH, 0);
         }
+    }
+
+    /// Fills the top left of the texture from rows of RGBA pixels in a buffer, some time from now.
+    pub fn write_from(&self, buffer: &PixelBuffer, width: u32, height: u32) {
+        buffer.unpack(|| self.write_raw(PixelUnpackData::BufferOffset(0), width, height));
+    }
+
+    fn write_raw(&self, pixels: PixelUnpackData<'_>, width: u32, height: u32) {
+        assert_eq!(self.texel, Texel::Rgba);
+        let (width, height) = (width as i32, height as i32);
+        self.bind(WORKBENCH);
+        let (target, format) = (glow::TEXTURE_2D, glow::RGBA);
+        unsafe { self.device.gl().tex_sub_image_2d(target, 0, 0, 0, width, height, format, glow::FLOAT, pixels) }
     }
 
     /// Reads the top left of level 0 into rows of `stride` RGBA pixels, after waiting for the device.
     pub fn read(&self, pixels: &mut [[f32; 4]], stride: usize, width: u32, height: u32) {
         assert_eq!(self.texel, Texel::Rgba);
         assert!(pixels.len() >= (height as usize - 1) * stride + width as usize && width as usize <= stride);
-        unsafe { self.device.gl().pixel_store_i32(glow::PACK_ROW_LENGTH, stride as i32) };
-        self.read_raw(0, bytemuck::cast_slice_mut(pixels), width, height);
-        unsafe { self.device.gl().pixel_store_i32(glow::PACK_ROW_LENGTH, 0) };
+        let gl = self.device.gl();
+        unsafe {
+            gl.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
+            gl.pixel_store_i32(glow::PACK_ROW_LENGTH, stride as i32);
+            self.read_raw(0, PixelPackData::Slice(Some(bytemuck::cast_slice_mut(pixels))), width, height);
+            gl.pixel_store_i32(glow::PACK_ROW_LENGTH, 0);
+        }
+    }
+
+    /// Reads the top left of level 0 into a buffer, some time from now.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the driver gives no memory.
+    pub fn read_to(&self, buffer: &mut PixelBuffer, width: u32, height: u32) -> Result<()> {
+        assert_eq!(self.texel, Texel::Rgba);
+        buffer.pack(width, height, || self.read_raw(0, PixelPackData::BufferOffset(0), width, height))
     }
 
     /// A whole level, its channels one after the other, after waiting for the device.
     pub fn read_level(&self, level: u32) -> Vec<f32> {
         let (width, height) = (self.level_width(level), self.level_height(level));
         let mut values = vec![0.0; width as usize * height as usize * self.texel.channels()];
-        self.read_raw(level, bytemuck::cast_slice_mut(&mut values), width, height);
+        unsafe { self.device.gl().bind_buffer(glow::PIXEL_PACK_BUFFER, None) };
+        self.read_raw(level, PixelPackData::Slice(Some(bytemuck::cast_slice_mut(&mut values))), width, height);
         values
     }
 
-    fn read_raw(&self, level: u32, bytes: &mut [u8], width: u32, height: u32) {
+    fn read_raw(&self, level: u32, pixels: PixelPackData<'_>, width: u32, height: u32) {
         let gl = self.device.gl();
+        let (width, height, format) = (width as i32, height as i32, self.texel.format());
         unsafe {
-            gl.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
             gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffers[level as usize]));
-            gl.read_pixels(
-                0,
-                0,
-                width as i32,
-                height as i32,
-                self.texel.format(),
-                glow::FLOAT,
-                PixelPackData::Slice(Some(bytes)),
-            );
+            gl.read_pixels(0, 0, width, height, format, glow::FLOAT, pixels);
         }
     }
 }

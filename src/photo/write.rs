@@ -39,6 +39,14 @@ enum Target {
     Stream,
 }
 
+/// Whether [`write()`] knows the format that a name's extension asks for.
+///
+/// # Errors
+/// [`Error::Write`] where it does not.
+pub fn check_name(path: &Path) -> Result<()> {
+    Format::from_extension(path).map(drop).map_err(|reason| Error::write(path, reason))
+}
+
 /// Whether [`write()`] would accept this target and these options: ask before the long work starts.
 ///
 /// # Errors

@@ -7,6 +7,7 @@ mod outputs;
 mod plan;
 mod refusals;
 mod rex;
+mod sequence;
 mod tradeoff;
 
 use std::path::{Path, PathBuf};

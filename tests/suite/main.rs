@@ -5,6 +5,7 @@ mod certificate;
 mod cli;
 mod composite;
 mod evaluators;
+mod exchange;
 mod experiments;
 mod extremes;
 mod fourier_bessel;

@@ -1,9 +1,15 @@
-//! `vglare apply`: the main job.
+//! `vglare apply`: the main job, for one photo or for the photos of a shot.
 
+mod job;
 mod look;
+mod names;
+mod outputs;
+mod pipeline;
 mod report;
 mod run;
+mod sequence;
 mod summary;
+mod tally;
 
 use std::path::PathBuf;
 
@@ -24,13 +30,25 @@ pub use run::run;
 ///
 /// Finds the lights in the photo (or takes them from a file), makes the ghosts that the lens turns them into, computes
 /// their sum to the tolerance, adds it to the photo and writes the picture in the format that OUTPUT's extension names.
+///
+/// Several photos, as the frames of a shot, are done in one run, in which the next is read and the last written while one
+/// is computed. OUTPUT then is a folder, which is made if need be, or a pattern. Each photo has lights, a plan and a
+/// measured error of its own. What is found in each photo for itself can change from frame to frame more than the scene
+/// does, and flicker: --threshold, --lights or --scene says for all what glares, and --normalize minmax stretches each
+/// photo by its own glare.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// The photo: OpenEXR, Radiance HDR, PFM, TIFF, PNG or JPEG
-    input: PathBuf,
+    /// The photo, or several: OpenEXR, Radiance HDR, PFM, TIFF, PNG or JPEG
+    #[arg(value_name = "INPUT", required = true)]
+    inputs: Vec<PathBuf>,
 
-    /// The picture: .exr .hdr .pfm .tif .tiff .png .jpg .jpeg
+    /// The picture: .exr .hdr .pfm .tif .tiff .png .jpg .jpeg; for several photos, a folder or a pattern
+    ///
+    /// A folder, as out/, is made if need be; each picture in it is called as its photo. A pattern has fields in its file
+    /// name: #### or %04d becomes the frame number, the last number in the photo's name, with at least four digits (so do
+    /// ## or %02d with two, and %d with as many as it has); {name} becomes the photo's name without its extension. One #
+    /// alone stays what it is.
     #[arg(short, long)]
     output: PathBuf,
 
@@ -42,9 +60,12 @@ pub struct Args {
     #[arg(short, long, conflicts_with = "verbose")]
     quiet: bool,
 
-    /// Say more: the plan, and the time of each pass
+    /// Say more: the plan, and the time of each pass; for several photos, a line each
     #[arg(short, long)]
     verbose: bool,
+
+    #[command(flatten)]
+    sequence: SequenceArgs,
 
     #[command(flatten)]
     scene: SceneArgs,
@@ -71,7 +92,30 @@ Examples:
   vglare apply night.exr -o veiled.exr --preset vintage-uncoated --strength 1.5
   vglare apply night.exr -o veiled.exr --glare glare.exr --report report.json
   vglare apply night.exr -o veiled.exr --scene scene.toml --tolerance 1e-4 --strict
-  vglare apply night.exr -o veiled.exr --budget 20 --verify full";
+  vglare apply night.exr -o veiled.exr --budget 20 --verify full
+  vglare apply shot.*.exr -o veiled/ --threshold 20
+  vglare apply shot.*.exr -o 'veiled.####.exr' --glare 'glare.####.exr' --report report.json
+  vglare apply shot.*.exr -o 'previews/{name}.png' --keep-going --quiet";
+
+impl Args {
+    /// Whether anything is rendered at all.
+    fn renders(&self) -> bool {
+        self.look.strength != 0.0
+    }
+}
+
+/// How several photos are gone through.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Several photos")]
+struct SequenceArgs {
+    /// Where a photo cannot be done, go on with the others and fail at the end, instead of stopping there
+    #[arg(long)]
+    keep_going: bool,
+
+    /// Finish each photo before the next is read: with one photo in memory at a time instead of up to three
+    #[arg(long)]
+    one_by_one: bool,
+}
 
 /// How the result is held against the truth.
 #[derive(Debug, clap::Args)]
@@ -90,11 +134,12 @@ struct ProofArgs {
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Output")]
 struct OutputArgs {
-    /// Write the glare alone as well, as it was added; scene-linear, in any format
+    /// Write the glare alone as well, as it was added; scene-linear, in any format. For several photos a folder or a
+    /// pattern, like OUTPUT
     #[arg(long, value_name = "FILE")]
     glare: Option<PathBuf>,
 
-    /// Write what was computed, how, how exactly and how fast, as JSON
+    /// Write what was computed, how, how exactly and how fast, as JSON; one file for all photos
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
 

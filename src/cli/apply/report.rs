@@ -2,12 +2,12 @@
 
 use serde::Serialize;
 
-use super::run::Run;
+use super::job::Job;
 use crate::certificate::Certificate;
 use crate::cli::plan::CostModelReport;
 use crate::cli::scene::Gathered;
 use crate::gpu::{Info, PassTime};
-use crate::photo::{BadKind, BadPixels, Photo};
+use crate::photo::BadKind;
 use crate::plan::Plan;
 
 /// As JSON, one object.
@@ -90,40 +90,41 @@ pub struct Stage {
 }
 
 impl<'a> Report<'a> {
-    pub fn new(run: &'a Run<'_>, photo: &Photo, bad: &BadPixels, scene: &'a Gathered) -> Self {
+    pub fn new(job: &'a Job<'_>) -> Self {
         Self {
             vglare: env!("CARGO_PKG_VERSION"),
-            input: photo_report(run, photo, bad),
-            output: run.args.output.display().to_string(),
-            scene: scene_report(scene),
-            strength: run.args.look.strength,
-            normalize: run.args.look.normalize,
-            mix: run.args.look.mix,
-            plan: run.planned.as_ref().map(|planned| &planned.plan),
-            cost: cost_report(run),
-            notes: run.planned.as_ref().map_or(&[], |planned| &planned.notes),
-            error: run.certificate.as_ref(),
-            passes: &run.passes,
-            milliseconds: run.stages.iter().map(|&(stage, wall_ms)| Stage { stage, wall_ms }).collect(),
-            renderer: run.device.as_ref().map(|device| device.info()),
+            input: photo_report(job),
+            output: job.paths.output.display().to_string(),
+            scene: scene_report(&job.scene),
+            strength: job.args.look.strength,
+            normalize: job.args.look.normalize,
+            mix: job.args.look.mix,
+            plan: job.planned.as_ref().map(|planned| &planned.plan),
+            cost: cost_report(job),
+            notes: job.planned.as_ref().map_or(&[], |planned| &planned.notes),
+            error: job.certificate.as_ref(),
+            passes: &job.passes,
+            milliseconds: job.stages.0.iter().map(|&(stage, wall_ms)| Stage { stage, wall_ms }).collect(),
+            renderer: job.info.as_deref(),
         }
     }
 }
 
-fn cost_report<'a>(run: &'a Run<'_>) -> Option<CostReport<'a>> {
-    let planned = run.planned.as_ref()?;
+fn cost_report<'a>(job: &'a Job<'_>) -> Option<CostReport<'a>> {
+    let planned = job.planned.as_ref()?;
     Some(CostReport {
-        budget_ms: run.args.accuracy.budget,
+        budget_ms: job.args.accuracy.budget,
         predicted_ms: planned.plan.cost(),
-        measured_ms: run.measured_ms,
+        measured_ms: job.measured_ms,
         model: CostModelReport::new(planned),
     })
 }
 
-fn photo_report(run: &Run<'_>, photo: &Photo, bad: &BadPixels) -> PhotoReport {
+fn photo_report(job: &Job<'_>) -> PhotoReport {
+    let (photo, bad) = (&job.photo, &job.bad);
     let window = photo.frame.window;
     PhotoReport {
-        file: run.args.input.display().to_string(),
+        file: job.paths.input.display().to_string(),
         format: photo.format_name(),
         depth: photo.depth_name(),
         picture: [photo.width(), photo.height()],

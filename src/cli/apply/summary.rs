@@ -2,43 +2,43 @@
 
 use std::io::{self, Write};
 
+use super::job::Job;
 use super::report::kind_name;
-use super::run::Run;
 use crate::Result;
 use crate::certificate::Verify;
 use crate::cli::plan::text;
 use crate::cli::scene::Gathered;
 use crate::cli::stdout;
-use crate::photo::{BadPixels, Photo};
 use crate::plan::Plan;
 
 /// Warnings to standard error; unless quiet, a short summary to standard output.
-pub fn print(run: &Run<'_>, photo: &Photo, bad: &BadPixels, scene: &Gathered) -> Result<()> {
-    for warning in &run.warnings {
+pub fn print(job: &Job<'_>) -> Result<()> {
+    for warning in &job.warnings {
         eprintln!("vglare: warning: {warning}");
     }
-    if run.args.quiet {
+    if job.args.quiet {
         return Ok(());
     }
     stdout::print(|out| {
-        about_photo(out, run, photo, bad)?;
-        about_scene(out, scene)?;
-        if let Some(planned) = &run.planned {
-            about_plan(out, run, &planned.plan)?;
+        about_photo(out, job)?;
+        about_scene(out, &job.scene)?;
+        if let Some(planned) = &job.planned {
+            about_plan(out, job, &planned.plan)?;
             planned.notes.iter().try_for_each(|note| writeln!(out, "note     {note}"))?;
         }
-        if run.args.verbose {
-            about_times(out, run)?;
+        if job.args.verbose {
+            about_times(out, job)?;
         }
-        let total: f64 = run.stages.iter().map(|(_, ms)| ms).sum();
-        writeln!(out, "wrote    {} in {:.2} s", run.args.output.display(), total * 1e-3)
+        let total: f64 = job.stages.0.iter().map(|(_, ms)| ms).sum();
+        writeln!(out, "wrote    {} in {:.2} s", job.paths.output.display(), total * 1e-3)
     })
 }
 
-fn about_photo(out: &mut dyn Write, run: &Run<'_>, photo: &Photo, bad: &BadPixels) -> io::Result<()> {
+fn about_photo(out: &mut dyn Write, job: &Job<'_>) -> io::Result<()> {
+    let (photo, bad) = (&job.photo, &job.bad);
     let (width, height) = (photo.width(), photo.height());
     let (format, depth) = (photo.format_name(), photo.depth_name());
-    writeln!(out, "photo    {}: {width} x {height}, {format}, {depth}", run.args.input.display())?;
+    writeln!(out, "photo    {}: {width} x {height}, {format}, {depth}", job.paths.input.display())?;
     if let Some((column, row, kind)) = bad.first {
         writeln!(
             out,
@@ -71,14 +71,14 @@ fn about_scene(out: &mut dyn Write, scene: &Gathered) -> io::Result<()> {
     }
 }
 
-fn about_plan(out: &mut dyn Write, run: &Run<'_>, plan: &Plan) -> io::Result<()> {
+fn about_plan(out: &mut dyn Write, job: &Job<'_>, plan: &Plan) -> io::Result<()> {
     text::plan(out, plan)?;
-    if let Some(budget) = run.args.accuracy.budget {
+    if let Some(budget) = job.args.accuracy.budget {
         write!(out, "budget   {budget} ms bought a tolerance of {:.1e}", plan.tolerance)?;
-        let (predicted, measured) = (plan.cost().unwrap_or(f64::NAN), run.measured_ms.unwrap_or(f64::NAN));
+        let (predicted, measured) = (plan.cost().unwrap_or(f64::NAN), job.measured_ms.unwrap_or(f64::NAN));
         writeln!(out, ": {predicted:.1} ms predicted, {measured:.1} ms measured")?;
     }
-    if let Some(error) = &run.certificate {
+    if let Some(error) = &job.certificate {
         let all = if error.verify == Verify::Full { "all " } else { "" };
         writeln!(
             out,
@@ -86,24 +86,24 @@ fn about_plan(out: &mut dyn Write, run: &Run<'_>, plan: &Plan) -> io::Result<()>
             error.measured, error.pixels, error.predicted, error.asked
         )?;
     }
-    match &run.device {
-        Some(device) => writeln!(out, "renderer {}, {}", device.info().renderer, device.info().route),
+    match &job.info {
+        Some(info) => writeln!(out, "renderer {}, {}", info.renderer, info.route),
         None => Ok(()),
     }
 }
 
-fn about_times(out: &mut dyn Write, run: &Run<'_>) -> io::Result<()> {
-    if let Some(planned) = &run.planned {
+fn about_times(out: &mut dyn Write, job: &Job<'_>) -> io::Result<()> {
+    if let Some(planned) = &job.planned {
         text::details(out, planned)?;
     }
-    for pass in &run.passes {
+    for pass in &job.passes {
         write!(out, "pass     {:<13}{:>9.2} ms", pass.pass, pass.wall_ms)?;
         match pass.gpu_ms {
             Some(gpu) => writeln!(out, ", {gpu:.2} ms by the device's timer")?,
             None => writeln!(out)?,
         }
     }
-    for (stage, ms) in &run.stages {
+    for (stage, ms) in &job.stages.0 {
         writeln!(out, "stage    {stage:<13}{ms:>9.2} ms")?;
     }
     Ok(())

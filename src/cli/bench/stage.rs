@@ -106,7 +106,8 @@ impl Actor {
         self.frame()
     }
 
-    fn finish(&self) -> Result<()> {
+    /// Waits for the device.
+    pub fn finish(&self) -> Result<()> {
         self.renderer.finish();
         Ok(())
     }

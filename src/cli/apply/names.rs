@@ -1,0 +1,182 @@
+//! Names of outputs: a folder, or a pattern with fields that each photo fills in.
+
+use std::path::{Path, PathBuf, is_separator};
+
+use crate::{Error, Result};
+
+/// The field for a photo's own name.
+const NAME: &str = "{name}";
+
+/// What an output option names for many photos.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Names {
+    /// A folder, where each output is called as its photo.
+    Folder(PathBuf),
+    /// A file name with fields, in a folder.
+    Pattern { given: PathBuf, parts: Vec<Part> },
+}
+
+/// A part of a pattern.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Part {
+    /// Stands for itself.
+    Text(String),
+    /// The photo's file name without its extension.
+    Name,
+    /// The photo's frame number, with at least so many digits.
+    Number(usize),
+}
+
+impl Names {
+    /// What `given` names, if it is a folder or has a field in its file name; otherwise it is one file's name.
+    pub fn new(given: &Path) -> Option<Self> {
+        let ends_open = given.to_string_lossy().ends_with(is_separator);
+        if ends_open || given.is_dir() {
+            return Some(Self::folder(given));
+        }
+        let parts = parts(given.file_name()?.to_str()?);
+        let plain = parts.iter().all(|part| matches!(part, Part::Text(_)));
+        (!plain).then(|| Self::Pattern { given: given.to_owned(), parts })
+    }
+
+    /// A folder, whether it is there or not.
+    pub fn folder(given: &Path) -> Self {
+        // Without the separator at its end, by which a file could not even be seen to be one.
+        Self::Folder(given.components().collect())
+    }
+
+    /// The folder that all outputs are in.
+    pub fn place(&self) -> &Path {
+        let folder = match self {
+            Self::Folder(folder) => Some(folder.as_path()),
+            Self::Pattern { given, .. } => given.parent(),
+        };
+        folder.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+    }
+
+    /// The output of a photo.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where the photo's name lacks what the pattern asks for.
+    pub fn of(&self, photo: &Path) -> Result<PathBuf> {
+        let lacks = |what: &str, given: &Path| {
+            Error::Usage(format!("{} has no {what} in its name, as {} wants", photo.display(), given.display()))
+        };
+        match self {
+            Self::Folder(folder) => Ok(folder.join(photo.file_name().ok_or_else(|| lacks("file", folder))?)),
+            Self::Pattern { given, parts } => {
+                let stem =
+                    photo.file_stem().and_then(|stem| stem.to_str()).ok_or_else(|| lacks("readable file", given))?;
+                let mut name = String::new();
+                for part in parts {
+                    match part {
+                        Part::Text(text) => name.push_str(text),
+                        Part::Name => name.push_str(stem),
+                        Part::Number(digits) => {
+                            let number = number(stem).ok_or_else(|| lacks("frame number", given))?;
+                            name.push_str(&format!("{number:0>digits$}"));
+                        }
+                    }
+                }
+                Ok(given.with_file_name(name))
+            }
+        }
+    }
+}
+
+/// Takes a file name apart.
+fn parts(mut text: &str) -> Vec<Part> {
+    let mut parts = Vec::new();
+    let mut plain = String::new();
+    while let Some(first) = text.chars().next() {
+        let (part, length) = match field(text) {
+            Some(found) => found,
+            None => {
+                plain.push(first);
+                text = &text[first.len_utf8()..];
+                continue;
+            }
+        };
+        if !plain.is_empty() {
+            parts.push(Part::Text(std::mem::take(&mut plain)));
+        }
+        parts.push(part);
+        text = &text[length..];
+    }
+    if !plain.is_empty() {
+        parts.push(Part::Text(plain));
+    }
+    parts
+}
+
+/// The field that `text` begins with, and how long it is.
+fn field(text: &str) -> Option<(Part, usize)> {
+    if text.starts_with(NAME) {
+        return Some((Part::Name, NAME.len()));
+    }
+    let hashes = text.len() - text.trim_start_matches('#').len();
+    // One alone means one digit to some programs, four to others, and is a plain character in a title.
+    if hashes >= 2 {
+        return Some((Part::Number(hashes), hashes));
+    }
+    let printf = text.strip_prefix('%')?;
+    let (digits, _) = printf.split_once('d')?;
+    match digits.as_bytes() {
+        [] => Some((Part::Number(1), 2)),
+        [b'0', width @ b'1'..=b'9'] => Some((Part::Number(usize::from(width - b'0')), 4)),
+        _ => None,
+    }
+}
+
+/// The frame number in a file name: its last digits, without the noughts that they begin with.
+fn number(stem: &str) -> Option<&str> {
+    let last = stem.rsplit(|c: char| !c.is_ascii_digit()).find(|digits| !digits.is_empty())?;
+    let digits = last.trim_start_matches('0');
+    Some(if digits.is_empty() { "0" } else { digits })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(given: &str, photo: &str) -> Option<String> {
+        let path = Names::new(Path::new(given)).expect("many names").of(Path::new(photo)).ok()?;
+        Some(path.to_str().expect("text").replace('\\', "/"))
+    }
+
+    #[test]
+    fn fields_are_filled_in() {
+        for (given, photo, expected) in [
+            ("out/veiled.####.exr", "in/shot.0007.exr", "out/veiled.0007.exr"),
+            ("veiled.####.exr", "shot.12345.exr", "veiled.12345.exr"),
+            ("veiled.##.exr", "shot.0007.exr", "veiled.07.exr"),
+            ("v_%04d.png", "shot_v02.1001.exr", "v_1001.png"),
+            ("v_%d.png", "shot.0000.exr", "v_0.png"),
+            ("out/{name}.png", "in/shot.0007.exr", "out/shot.0007.png"),
+            ("{name}_%03d#.png", "é7.exr", "é7_007#.png"),
+            ("out/", "in/shot.0007.exr", "out/shot.0007.exr"),
+            ("a####/{name}.exr", "b.exr", "a####/b.exr"),
+        ] {
+            assert_eq!(of(given, photo).as_deref(), Some(expected), "{given} of {photo}");
+        }
+        assert_eq!(of("out.####.exr", "lamp.exr"), None, "a number is missing");
+    }
+
+    #[test]
+    fn names_without_fields_are_files() {
+        for given in
+            ["out.exr", "take#2.exr", "100%.exr", "a%5d.exr", "%0xd.exr", "{frame}.exr", "a####/out.exr", "out"]
+        {
+            assert_eq!(Names::new(Path::new(given)), None, "{given}");
+        }
+    }
+
+    #[test]
+    fn the_place_is_the_folder() {
+        for (given, place) in
+            [("out/", "out"), ("out/{name}.exr", "out"), ("{name}.exr", "."), ("/tmp/a/%d.exr", "/tmp/a")]
+        {
+            assert_eq!(Names::new(Path::new(given)).unwrap().place(), Path::new(place), "{given}");
+        }
+    }
+}

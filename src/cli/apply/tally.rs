@@ -1,0 +1,223 @@
+//! What became of the photos of a sequence: told as they are done, and in sum.
+
+use std::io::{self, Write};
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
+
+use serde::Serialize;
+use serde_json::Value;
+
+use super::Args;
+use super::job::Job;
+use super::outputs::{Paths, Sequence};
+use super::report::Report;
+use crate::cli::progress::Progress;
+use crate::cli::stdout;
+use crate::gpu::Info;
+use crate::{Error, Result, target};
+
+/// What has become of the photos so far.
+pub struct Tally<'a> {
+    args: &'a Args,
+    sequence: &'a Sequence,
+    progress: &'a Progress,
+    started: Instant,
+    done: usize,
+    written: usize,
+    failed: Vec<Failed>,
+    first_error: Option<Error>,
+    /// Photos with pixels that are no light.
+    bad: usize,
+    measured: usize,
+    missed: usize,
+    worst: Option<Worst>,
+    info: Option<Arc<Info>>,
+    /// A report a photo, where one is asked for.
+    reports: Vec<Value>,
+}
+
+/// The photo with the largest error.
+struct Worst {
+    photo: PathBuf,
+    measured: f64,
+    asked: f64,
+}
+
+#[derive(Serialize)]
+struct Failed {
+    input: String,
+    error: String,
+}
+
+/// The report of a sequence, as JSON.
+#[derive(Serialize)]
+struct SequenceReport<'a> {
+    vglare: &'static str,
+    frames: &'a [Value],
+    failed: &'a [Failed],
+    summary: Summary,
+}
+
+#[derive(Serialize)]
+struct Summary {
+    photos: usize,
+    written: usize,
+    failed: usize,
+    /// With an error above the tolerance.
+    above_tolerance: usize,
+    worst_error: Option<f64>,
+    worst_photo: Option<String>,
+    seconds: f64,
+    side_by_side: bool,
+}
+
+impl<'a> Tally<'a> {
+    pub fn new(args: &'a Args, sequence: &'a Sequence, progress: &'a Progress) -> Self {
+        Self {
+            args,
+            sequence,
+            progress,
+            started: Instant::now(),
+            done: 0,
+            written: 0,
+            failed: Vec::new(),
+            first_error: None,
+            bad: 0,
+            measured: 0,
+            missed: 0,
+            worst: None,
+            info: None,
+            reports: Vec::new(),
+        }
+    }
+
+    /// Counts a photo that was written, or why it was not; says whether to go on.
+    pub fn add(&mut self, paths: &Paths, done: Result<Job<'_>>) -> ControlFlow<()> {
+        let result = done.and_then(|job| self.written(&job));
+        let total = self.sequence.frames.len();
+        if let Err(error) = result {
+            let error = error.in_frame(&paths.input);
+            self.failed.push(Failed { input: paths.input.display().to_string(), error: error.to_string() });
+            if self.args.sequence.keep_going {
+                self.progress.aside(|| eprintln!("vglare: {error}"));
+            }
+            self.first_error.get_or_insert(error);
+            if !self.args.sequence.keep_going {
+                return ControlFlow::Break(());
+            }
+        }
+        self.done += 1;
+        self.progress.part(format!("{} of {total} photos", self.done), self.done as f64 / total as f64);
+        ControlFlow::Continue(())
+    }
+
+    fn written(&mut self, job: &Job<'_>) -> Result<()> {
+        self.written += 1;
+        self.bad += usize::from(job.bad.first.is_some());
+        self.info = self.info.take().or(job.info.clone());
+        if let Some(error) = &job.certificate {
+            self.measured += 1;
+            self.missed += usize::from(error.check().is_err());
+            // Not a number is worse than any, in this order.
+            let worse = |worst: &Worst| error.measured.abs().total_cmp(&worst.measured.abs()).is_gt();
+            if self.worst.as_ref().is_none_or(worse) {
+                let photo = job.paths.input.clone();
+                self.worst = Some(Worst { photo, measured: error.measured, asked: error.asked });
+            }
+        }
+        if let Some(path) = &self.args.output_options.report {
+            let report = serde_json::to_value(Report::new(job)).map_err(|error| Error::write(path, error))?;
+            self.reports.push(report);
+        }
+        self.progress.aside(|| {
+            for warning in &job.warnings {
+                eprintln!("vglare: warning: {}: {warning}", job.paths.input.display());
+            }
+            if self.args.verbose { stdout::print(|out| line(out, job)) } else { Ok(()) }
+        })
+    }
+
+    /// Writes the report, prints the sum and gives the sequence's own error, if there is one.
+    ///
+    /// # Errors
+    /// The first photo's that could not be done; [`Error::Frames`] where the others were; [`Error::FramesMissed`] under
+    /// --strict; those of writing the report.
+    pub fn finish(mut self) -> Result<()> {
+        let seconds = self.started.elapsed().as_secs_f64();
+        if let Some(path) = &self.args.output_options.report {
+            target::write_json(path, &self.report(seconds), self.args.force)?;
+        }
+        if !self.args.quiet {
+            self.progress.aside(|| stdout::print(|out| self.print(out, seconds)))?;
+        }
+        let frames = self.sequence.frames.len();
+        match (self.first_error.take(), &self.worst) {
+            (Some(first), _) if self.args.sequence.keep_going => {
+                Err(Error::Frames { failed: self.failed.len(), frames, first: Box::new(first) })
+            }
+            (Some(first), _) => Err(first),
+            (None, Some(worst)) if self.args.proof.strict && self.missed > 0 => Err(Error::FramesMissed {
+                missed: self.missed,
+                frames,
+                worst: worst.photo.clone(),
+                measured: worst.measured,
+                asked: worst.asked,
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    fn report(&self, seconds: f64) -> SequenceReport<'_> {
+        SequenceReport {
+            vglare: env!("CARGO_PKG_VERSION"),
+            frames: &self.reports,
+            failed: &self.failed,
+            summary: Summary {
+                photos: self.sequence.frames.len(),
+                written: self.written,
+                failed: self.failed.len(),
+                above_tolerance: self.missed,
+                worst_error: self.worst.as_ref().map(|worst| worst.measured),
+                worst_photo: self.worst.as_ref().map(|worst| worst.photo.display().to_string()),
+                seconds,
+                side_by_side: !self.args.sequence.one_by_one,
+            },
+        }
+    }
+
+    fn print(&self, out: &mut dyn Write, seconds: f64) -> io::Result<()> {
+        if self.bad > 0 {
+            writeln!(out, "pixels   NaN, infinite or negative ones in {} photos; none counts as light", self.bad)?;
+        }
+        if let Some(worst) = &self.worst {
+            let (measured, missed, all) = (worst.measured, self.missed, self.measured);
+            let photo = worst.photo.display();
+            writeln!(out, "error    {measured:.1e} at worst, in {photo}; {missed} of {all} above what was asked")?;
+        }
+        if let Some(info) = &self.info {
+            writeln!(out, "renderer {}, {}", info.renderer, info.route)?;
+        }
+        let (written, all, place) = (self.written, self.sequence.frames.len(), self.sequence.place.display());
+        write!(out, "wrote    {written} of {all} pictures into {place} in {seconds:.2} s")?;
+        if written > 1 { writeln!(out, ", {:.2} s each", seconds / written as f64) } else { writeln!(out) }
+    }
+}
+
+/// A photo that was written, in a line.
+fn line(out: &mut dyn Write, job: &Job<'_>) -> io::Result<()> {
+    let (photo, scene) = (&job.photo, &job.scene);
+    write!(out, "photo    {}: {} x {}, ", job.paths.output.display(), photo.width(), photo.height())?;
+    if let Some(found) = &scene.found {
+        write!(out, "{} lights at {:.4} and above, ", scene.lights.len(), found.threshold)?;
+    }
+    write!(out, "{} ghosts, ", scene.ghosts.len())?;
+    if let (Some(planned), Some(error)) = (&job.planned, &job.certificate) {
+        write!(out, "{}, error {:.1e}, ", planned.plan.evaluator, error.measured)?;
+    }
+    let total: f64 = job.stages.0.iter().map(|(_, ms)| ms).sum();
+    writeln!(out, "{:.2} s", total * 1e-3)?;
+    let notes = job.planned.iter().flat_map(|planned| &planned.notes);
+    notes.into_iter().try_for_each(|note| writeln!(out, "note     {note}"))
+}
