@@ -20,6 +20,8 @@ mod tiles;
 
 use std::rc::Rc;
 
+use rayon::prelude::*;
+
 use crate::frame::{Frame, Window};
 use crate::gpu::composite::{Composite, CompositePass};
 use crate::gpu::copy::CopyPass;
@@ -27,9 +29,9 @@ use crate::gpu::evaluators::Evaluators;
 use crate::gpu::field::{FieldPass, Source};
 use crate::gpu::range::RangePass;
 use crate::gpu::runner::Runner;
-use crate::gpu::spectrum::{Coefficients, Spectrum, SpectrumGroup};
+use crate::gpu::spectrum::{Coefficients, Ghosts, Spectrum, SpectrumGroup};
 use crate::gpu::{Device, PassTime};
-use crate::plan::{Evaluator, Plan};
+use crate::plan::{Evaluator, Plan, Transform};
 use crate::scene::Ghost;
 use crate::{Error, Result};
 
@@ -49,6 +51,8 @@ pub struct Renderer {
     copy: CopyPass,
     exchange: Exchange,
     scene: Option<(Vec<Ghost>, Plan)>,
+    /// Room for the next scene's ghosts.
+    room: Vec<Ghost>,
     tile_pixels: usize,
 }
 
@@ -69,6 +73,7 @@ impl Renderer {
             // The software renderer's memory is the photo's own: there a buffer is one more copy.
             exchange: Exchange::new(!device.info().software),
             scene: None,
+            room: Vec::new(),
             tile_pixels: tiles::PIXELS,
             runner,
         })
@@ -82,29 +87,50 @@ impl Renderer {
         if self.scene.as_ref().is_some_and(|(old, by)| by == plan && old == ghosts) {
             return Ok(());
         }
-        self.scene = None;
+        self.forget_scene();
         if plan.evaluator == Evaluator::Direct {
             let (direct, shapes) = convert::direct_ghosts(ghosts, plan);
             self.evaluators.set_ghosts(&self.runner, &direct, &shapes)?;
         } else {
-            let spectral: Vec<_> =
-                plan.groups.iter().map(|group| convert::spectral_ghosts(ghosts, plan, &group.members)).collect();
-            let tables: Vec<_> = plan.groups.iter().map(|group| convert::table(plan, group)).collect();
-            let groups: Vec<_> = (plan.groups.iter().zip(&spectral).zip(&tables))
-                .map(|((group, ghosts), table)| SpectrumGroup {
-                    coefficients: match table {
-                        Some(table) => Coefficients::Table(table),
-                        None => Coefficients::Factors(group.bell.shape().shader()),
-                    },
-                    ghosts,
-                    degree: group.degree,
-                })
-                .collect();
-            self.spectrum.compute(&self.runner, &plan.counts, &groups)?;
+            self.compute_spectrum(ghosts, plan)?;
         }
         self.runner.device().check("computing the spectrum")?;
-        self.scene = Some((ghosts.to_vec(), plan.clone()));
+        self.keep_scene(ghosts, plan);
         Ok(())
+    }
+
+    fn compute_spectrum(&mut self, ghosts: &[Ghost], plan: &Plan) -> Result<()> {
+        let (mut spectral, mut sums) = (Vec::new(), Vec::new());
+        for group in &plan.groups {
+            let (each, summed) = match &group.transform {
+                Transform::Dispatch => (convert::spectral_ghosts(ghosts, plan, &group.members), Vec::new()),
+                Transform::Gather(cells) => {
+                    (Vec::new(), self.runner.run("moments", || convert::gathered(ghosts, plan, group, cells)))
+                }
+            };
+            spectral.push(each);
+            sums.push(summed);
+        }
+        let tables: Vec<_> = plan.groups.iter().map(|group| convert::table(plan, group)).collect();
+        let groups = plan.groups.iter().enumerate().map(|(k, group)| SpectrumGroup {
+            coefficients: match &tables[k] {
+                Some(table) => Coefficients::Table(table),
+                None => Coefficients::Factors(group.bell.shape().shader()),
+            },
+            ghosts: match group.transform {
+                Transform::Dispatch => Ghosts::Each(&spectral[k]),
+                Transform::Gather(_) => Ghosts::Sums(&sums[k]),
+            },
+            degree: group.degree,
+        });
+        self.spectrum.compute(&self.runner, &plan.counts, &groups.collect::<Vec<_>>())
+    }
+
+    /// Keeps what [`Renderer::set_scene`] compares with.
+    fn keep_scene(&mut self, ghosts: &[Ghost], plan: &Plan) {
+        let mut kept = std::mem::take(&mut self.room);
+        ghosts.par_iter().cloned().collect_into_vec(&mut kept);
+        self.scene = Some((kept, plan.clone()));
     }
 
     /// Computes the spectrum of ghosts whose bell is a table, whatever bells they name: for each mode that the plan
@@ -114,16 +140,16 @@ impl Renderer {
     /// # Errors
     /// [`Error::Gl`] where the driver refuses.
     pub(crate) fn set_tabulated(&mut self, ghosts: &[Ghost], plan: &Plan, table: &[[f32; 4]]) -> Result<()> {
-        self.scene = None;
+        self.forget_scene();
         let everyone: Vec<u32> = (0..ghosts.len() as u32).collect();
         let group = SpectrumGroup {
             coefficients: Coefficients::Table(table),
-            ghosts: &convert::spectral_ghosts(ghosts, plan, &everyone),
+            ghosts: Ghosts::Each(&convert::spectral_ghosts(ghosts, plan, &everyone)),
             degree: plan.degree,
         };
         self.spectrum.compute(&self.runner, &plan.counts, &[group])?;
         self.runner.device().check("computing the spectrum")?;
-        self.scene = Some((ghosts.to_vec(), plan.clone()));
+        self.keep_scene(ghosts, plan);
         Ok(())
     }
 
@@ -192,7 +218,9 @@ impl Renderer {
 
     /// Forgets the scene, so that the next [`Renderer::set_scene`] computes its spectrum anew.
     pub fn forget_scene(&mut self) {
-        self.scene = None;
+        if let Some((ghosts, _)) = self.scene.take() {
+            self.room = ghosts;
+        }
     }
 
     /// The glare alone, as [`Renderer::composite`] would add it, row by row from the top; alpha is 1.

@@ -1,4 +1,5 @@
-//! The spectrum: ghosts in, A, B, C, D of every kept mode out, one dispatch a group.
+//! The spectrum: ghosts in, A, B, C, D of every kept mode out, one dispatch a group; or sums over ghosts in, where these
+//! were gathered elsewhere.
 
 use super::layout::{GHOSTS, OFFSETS, PARTIALS, PASS, SPECTRUM, SpectralGhost, TABLE};
 use super::resource::Buffer;
@@ -20,9 +21,19 @@ const PARTIALS_LIMIT: usize = 2 << 20;
 /// Ghosts of one bell, with the modes that they need.
 pub(crate) struct SpectrumGroup<'a> {
     pub coefficients: Coefficients<'a>,
-    pub ghosts: &'a [SpectralGhost],
+    pub ghosts: Ghosts<'a>,
     /// Highest harmonics in x and y that this group adds to.
     pub degree: [u32; 2],
+}
+
+/// What there is of a group's ghosts.
+#[derive(Clone, Copy)]
+pub(crate) enum Ghosts<'a> {
+    /// Each of them.
+    Each(&'a [SpectralGhost]),
+    /// The sums of cos cos, cos sin, sin cos and sin sin of their phases times their weights, of all modes up to the
+    /// group's degree, the harmonic of x running fastest. Their bell has to come as a table.
+    Sums(&'a [[[f64; 4]; 3]]),
 }
 
 /// Where the Fourier coefficients of a group's bell come from.
@@ -77,9 +88,17 @@ impl Spectrum {
         self.offsets.store(&offsets)?;
         self.terms.store(&vec![[0.0; 4]; 3 * terms])?;
         for group in groups {
-            let slices = Self::most_slices(group.degree);
-            for ghosts in group.ghosts.chunks(slices * LONGEST_SLICE) {
-                self.add(runner, &SpectrumGroup { ghosts, ..*group })?;
+            match group.ghosts {
+                Ghosts::Each(ghosts) => {
+                    for ghosts in ghosts.chunks(Self::most_slices(group.degree) * LONGEST_SLICE) {
+                        let slices = self.dispatch(runner, group, ghosts)?;
+                        self.add(runner, group, slices)?;
+                    }
+                }
+                Ghosts::Sums(sums) => {
+                    self.partials.store(&packed(sums, group.degree))?;
+                    self.add(runner, group, 1)?;
+                }
             }
         }
         Ok(())
@@ -92,18 +111,19 @@ impl Spectrum {
 
     /// How many vec4s the sums of one slice are.
     fn vectors(degree: [u32; 2]) -> usize {
-        let tiles = degree.map(|degree| (degree + 1).div_ceil(TILE));
+        let tiles = tiles(degree);
         3 * (tiles[0] * tiles[1] * TILE * TILE) as usize
     }
 
-    fn add(&mut self, runner: &Runner, group: &SpectrumGroup<'_>) -> Result<()> {
-        let tiles = group.degree.map(|degree| (degree + 1).div_ceil(TILE));
+    /// Sums some of a group's ghosts in slices, and says in how many.
+    fn dispatch(&mut self, runner: &Runner, group: &SpectrumGroup<'_>, ghosts: &[SpectralGhost]) -> Result<u32> {
+        let tiles = tiles(group.degree);
         let vectors = Self::vectors(group.degree);
         let most = Self::most_slices(group.degree);
-        let slice_length = SHORTEST_SLICE.max(group.ghosts.len().div_ceil(most));
-        let slices = group.ghosts.len().div_ceil(slice_length) as u32;
+        let slice_length = SHORTEST_SLICE.max(ghosts.len().div_ceil(most));
+        let slices = ghosts.len().div_ceil(slice_length) as u32;
 
-        self.ghosts.store(group.ghosts)?;
+        self.ghosts.store(ghosts)?;
         if self.partials.length() < slices as usize * vectors {
             self.partials = Buffer::new(runner.device(), slices as usize * vectors)?;
         }
@@ -111,13 +131,21 @@ impl Spectrum {
         self.partials.bind_storage(PARTIALS);
         self.bind();
         let [n, m] = group.degree;
-        self.uniforms.store(&[[group.ghosts.len() as u32, slice_length as u32, n, m]])?;
+        self.uniforms.store(&[[ghosts.len() as u32, slice_length as u32, n, m]])?;
         self.uniforms.bind_uniform(PASS);
         let bell = match group.coefficients {
             Coefficients::Factors(bell) => bell,
             Coefficients::Table(_) => "bells/point.glsl",
         };
         runner.dispatch("spectrum.comp", &[("BELL", &format!("\"{bell}\""))], [tiles[0], tiles[1], slices])?;
+        Ok(slices)
+    }
+
+    /// Adds the sums of some slices to the spectrum.
+    fn add(&mut self, runner: &Runner, group: &SpectrumGroup<'_>, slices: u32) -> Result<()> {
+        self.partials.bind_storage(PARTIALS);
+        self.bind();
+        let ([n, m], tiles) = (group.degree, tiles(group.degree));
         self.uniforms.store(&[[n, m, slices, 0]])?;
         self.uniforms.bind_uniform(PASS);
         let table = match group.coefficients {
@@ -158,4 +186,22 @@ impl Spectrum {
     pub fn degree(&self) -> [u32; 2] {
         self.degree
     }
+}
+
+/// Work groups along x and y.
+fn tiles(degree: [u32; 2]) -> [u32; 2] {
+    degree.map(|degree| (degree + 1).div_ceil(TILE))
+}
+
+/// Sums as one slice of partials.
+fn packed(sums: &[[[f64; 4]; 3]], degree: [u32; 2]) -> Vec<[f32; 4]> {
+    let columns = degree[0] as usize + 1;
+    let stride = (tiles(degree)[0] * TILE) as usize;
+    let mut partials = vec![[0.0; 4]; Spectrum::vectors(degree)];
+    for (row, sums) in partials.chunks_exact_mut(3 * stride).zip(sums.chunks_exact(columns)) {
+        for (partial, sum) in row.iter_mut().zip(sums.as_flattened()) {
+            *partial = sum.map(|value| value as f32);
+        }
+    }
+    partials
 }

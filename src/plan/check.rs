@@ -1,6 +1,7 @@
 //! What cannot be planned for: numbers that are none, and those that f32 has no room for.
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use super::{HIGHEST_DEGREE, Request};
 use crate::scene::Ghost;
@@ -13,22 +14,21 @@ const BRIGHTEST: f64 = 1e37;
 pub(super) fn ghosts(ghosts: &[Ghost]) -> Result<()> {
     let (smallest, largest) = (f64::from(f32::MIN_POSITIVE), f64::from(f32::MAX));
     let size = |size: f64| (smallest..=largest).contains(&size);
-    for (index, ghost) in ghosts.iter().enumerate() {
-        let wrong = if !(size(ghost.size.x) && size(ghost.size.y)) {
-            format!(
+    let wrong = |ghost: &Ghost| {
+        if !(size(ghost.size.x) && size(ghost.size.y)) {
+            Some(format!(
                 "sizes of {:e} x {:e}, and each has to be from {smallest:.1e} to {largest:.1e}",
                 ghost.size.x, ghost.size.y
-            )
+            ))
         } else if ghost.center.is_nan() || ghost.center.abs().max_element() > largest {
-            format!("its centre at ({:e}, {:e}), beyond what 32-bit floats hold", ghost.center.x, ghost.center.y)
-        } else if let Some(radiance) = ghost.radiance.iter().find(|radiance| !radiance.is_finite()) {
-            format!("a radiance of {radiance}")
+            Some(format!("its centre at ({:e}, {:e}), beyond what 32-bit floats hold", ghost.center.x, ghost.center.y))
         } else {
-            continue;
-        };
-        return Err(Error::Plan(format!("ghost {} has {wrong}", index + 1)));
-    }
-    Ok(())
+            let radiance = ghost.radiance.iter().find(|radiance| !radiance.is_finite());
+            radiance.map(|radiance| format!("a radiance of {radiance}"))
+        }
+    };
+    let first = ghosts.par_iter().enumerate().find_map_first(|(index, ghost)| Some((index, wrong(ghost)?)));
+    first.map_or(Ok(()), |(index, wrong)| Err(Error::Plan(format!("ghost {} has {wrong}", index + 1))))
 }
 
 /// Refuses a period or a degree that no series has.

@@ -1,6 +1,6 @@
 //! What an evaluator costs: a handful of constants, one for each kind of work.
 
-use super::{Evaluator, Plan, Request};
+use super::{Evaluator, Plan, Request, gather};
 
 /// Nanoseconds that each kind of work takes on one machine; every one of them finite and above 0.
 ///
@@ -25,6 +25,9 @@ pub struct CostModel {
     pub interpolation: f64,
     /// One term of one ghost, in the spectrum.
     pub spectrum: f64,
+    /// One moment of one ghost, where a group's spectrum is gathered. Calibrations from before there were moments lack it.
+    #[serde(default = "built_in_moment")]
+    pub moment: f64,
     /// Starting a pass.
     pub pass: f64,
 }
@@ -41,25 +44,35 @@ impl Default for CostModel {
             // K = 1000 (3 to 8, with what else the machine did) and, at N = M = 10 where half of the tiles' modes are
             // idle, K = 100,000 (16).
             spectrum: 6.0,
+            moment: built_in_moment(),
             pass: 100_000.0, // what the smallest take
         }
     }
 }
 
+/// K = 1000 and 11,000 with 144 moments each, two threads, by `vglare calibrate` on a busy machine (0.76).
+fn built_in_moment() -> f64 {
+    0.8
+}
+
 impl CostModel {
+    /// How many constants there are.
+    pub const COUNT: usize = 9;
+
     /// The constants' names, in the order of [`CostModel::values`].
-    pub const NAMES: [&'static str; 8] =
-        ["bell", "term", "harmonic", "profile", "strip", "interpolation", "spectrum", "pass"];
+    pub const NAMES: [&'static str; Self::COUNT] =
+        ["bell", "term", "harmonic", "profile", "strip", "interpolation", "spectrum", "moment", "pass"];
 
     /// The constants in nanoseconds, in the order of [`CostModel::NAMES`].
-    pub fn values(&self) -> [f64; 8] {
-        let &Self { bell, term, harmonic, profile, strip, interpolation, spectrum, pass } = self;
-        [bell, term, harmonic, profile, strip, interpolation, spectrum, pass]
+    pub fn values(&self) -> [f64; Self::COUNT] {
+        let &Self { bell, term, harmonic, profile, strip, interpolation, spectrum, moment, pass } = self;
+        [bell, term, harmonic, profile, strip, interpolation, spectrum, moment, pass]
     }
 
     /// The constants from nanoseconds, in the order of [`CostModel::NAMES`].
-    pub fn from_values([bell, term, harmonic, profile, strip, interpolation, spectrum, pass]: [f64; 8]) -> Self {
-        Self { bell, term, harmonic, profile, strip, interpolation, spectrum, pass }
+    pub fn from_values(values: [f64; Self::COUNT]) -> Self {
+        let [bell, term, harmonic, profile, strip, interpolation, spectrum, moment, pass] = values;
+        Self { bell, term, harmonic, profile, strip, interpolation, spectrum, moment, pass }
     }
 
     /// Whether every constant is what a time can be: finite and above 0.
@@ -85,9 +98,7 @@ pub(super) fn estimate(plan: &Plan, request: &Request) -> Cost {
     let rows = |rows: f64, columns: f64| {
         rows * plan.terms as f64 * model.profile + rows * columns * f64::from(plan.degree[0] + 1) * model.harmonic
     };
-    let terms = |degree: [u32; 2]| f64::from(degree[0] + 1) * f64::from(degree[1] + 1);
-    let spectrum: f64 =
-        plan.groups.iter().map(|group| group.ghosts as f64 * terms(group.degree) * model.spectrum).sum();
+    let spectrum: f64 = plan.groups.iter().map(|group| gather::cost(group, &group.transform, &model)).sum();
     let field = match plan.evaluator {
         Evaluator::Direct => pixels * plan.ghosts() as f64 * model.bell * slower(plan.ghosts()) + model.pass,
         Evaluator::Series => spectrum + pixels * plan.terms as f64 * model.term + 4.0 * model.pass,

@@ -33,7 +33,7 @@ const PER_DEGREE: f64 = 200.0;
 pub(super) fn bound(ghosts: &[Ghost], weighed: &Weighed, frame: Frame, evaluator: Evaluator, degree: u32) -> f64 {
     if evaluator != Evaluator::Direct {
         let growth = 1.0 + f64::from(degree.saturating_sub(SEEN_DEGREE)) / PER_DEGREE;
-        return per_weight(evaluator) * growth * weighed.weights.iter().sum::<f64>().max(1.0);
+        return per_weight(evaluator) * growth * weighed.weight.max(1.0);
     }
     let kept = weighed.weights.iter().filter(|&&weight| weight > 0.0).count();
     let sum =

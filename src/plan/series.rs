@@ -3,9 +3,8 @@
 use glam::DVec2;
 
 use super::amplitudes::Amplitudes;
-use super::cost;
 use super::lattice::{self, Marginals};
-use super::{Evaluator, Group, Plan, Request, Survey, period, rounding, share, terms};
+use super::{Evaluator, Group, Plan, Request, Survey, cost, gather, period, rounding, share, terms};
 use crate::scene::Ghost;
 use crate::{Error, Result};
 
@@ -79,7 +78,9 @@ pub(super) fn plan_series(
     plan.predicted.periodisation =
         wide.map_or_else(|| period::error(&survey.reaches, plan.period), |w| w.periodisation);
     if plan.evaluator != Evaluator::Grid {
-        return plan_terms(plan, wide, request, usable * share::TRUNCATION).map(drop);
+        plan_terms(plan, wide, request, usable * share::TRUNCATION)?;
+        gather::choose(plan, request);
+        return Ok(());
     }
     let mut cheapest: Option<(f64, Plan)> = None;
     let mut refusal = None;
@@ -114,6 +115,7 @@ fn with_lattice(
     let lattice = lattice::coarsest(&plan, &marginals, request.frame, request.oversampling, interpolation)?;
     plan.predicted.interpolation = lattice.error;
     plan.lattice = Some(lattice);
+    gather::choose(&mut plan, request);
     Ok(plan)
 }
 

@@ -16,11 +16,13 @@ const CHUNK: usize = 4096;
 pub(super) struct Slots<'a, K> {
     bells: Vec<&'a Bell>,
     places: FxHashMap<(usize, K), usize>,
+    /// The last pair that was asked for, and its number: often the next one too.
+    last: Option<((usize, K), usize)>,
 }
 
-impl<'a, K: Hash + Eq> Slots<'a, K> {
+impl<'a, K: Hash + Eq + Copy> Slots<'a, K> {
     pub fn new() -> Self {
-        Self { bells: Vec::new(), places: FxHashMap::default() }
+        Self { bells: Vec::new(), places: FxHashMap::default(), last: None }
     }
 
     /// The pair's number, one more than the last where it is new.
@@ -30,8 +32,16 @@ impl<'a, K: Hash + Eq> Slots<'a, K> {
             self.bells.push(bell);
             self.bells.len() - 1
         });
+        let pair = (bell, key);
+        if let Some((last, slot)) = self.last
+            && last == pair
+        {
+            return slot;
+        }
         let next = self.places.len();
-        *self.places.entry((bell, key)).or_insert(next)
+        let slot = *self.places.entry(pair).or_insert(next);
+        self.last = Some((pair, slot));
+        slot
     }
 }
 

@@ -1,8 +1,11 @@
 //! Which terms of the series each group of ghosts needs.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 
 use super::decay::Decay;
+use super::gather::Transform;
 use super::slots::{Slots, by_chunks};
 use super::weigh::Weighed;
 use crate::Result;
@@ -16,58 +19,76 @@ pub struct Group {
     pub bell: Bell,
     /// Its ghosts, as indices into the list that was planned for.
     #[serde(skip)]
-    pub members: Vec<u32>,
+    pub members: Arc<Vec<u32>>,
     /// How many there are.
     pub ghosts: usize,
     /// The smallest size in x and in y among them.
     pub smallest: DVec2,
+    /// The largest.
+    pub largest: DVec2,
     /// The sum of their peaks, in units of the field's scale.
     pub weight: f64,
     /// Highest harmonic in x and y that they add to.
     pub degree: [u32; 2],
+    /// How its spectrum comes about.
+    pub transform: Transform,
 }
 
 /// Groups the ghosts that are not dropped: sizes within half an octave share a group, or equal sizes where the bell's
 /// coefficients come from a table.
 pub(super) fn group(ghosts: &[Ghost], weighed: &Weighed) -> Vec<Group> {
     let chunks = by_chunks(ghosts, &weighed.weights, |ghosts| {
-        let (mut slots, mut groups) = (Slots::new(), Vec::new());
+        let (mut slots, mut groups) = (Slots::new(), Vec::<(Group, Vec<u32>)>::new());
         for (index, ghost, weight) in ghosts {
             let slot = slots.slot(&ghost.bell, key(&ghost.bell, ghost.size));
             if slot == groups.len() {
-                groups.push(Group::new(&ghost.bell, ghost.size));
+                groups.push((Group::new(&ghost.bell, ghost.size), Vec::new()));
             }
-            groups[slot].add(index, ghost.size, weight);
+            let (group, members) = &mut groups[slot];
+            group.add(ghost.size, weight);
+            members.push(index);
         }
         groups
     });
-    let (mut slots, mut groups) = (Slots::new(), Vec::<Group>::new());
-    for group in chunks.iter().flatten() {
+    let (mut slots, mut groups) = (Slots::new(), Vec::<(Group, Vec<u32>)>::new());
+    for (group, members) in chunks.iter().flatten() {
         let slot = slots.slot(&group.bell, key(&group.bell, group.smallest));
         match groups.get_mut(slot) {
-            Some(joined) => joined.join(group),
-            None => groups.push(group.clone()),
+            Some((joined, others)) => {
+                joined.join(group);
+                others.extend(members);
+            }
+            None => groups.push((group.clone(), members.clone())),
         }
     }
-    groups
+    groups.into_iter().map(|(group, members)| Group { members: Arc::new(members), ..group }).collect()
 }
 
 impl Group {
     fn new(bell: &Bell, size: DVec2) -> Self {
-        Self { bell: bell.clone(), members: Vec::new(), ghosts: 0, smallest: size, weight: 0.0, degree: [0; 2] }
+        Self {
+            bell: bell.clone(),
+            members: Arc::default(),
+            ghosts: 0,
+            smallest: size,
+            largest: size,
+            weight: 0.0,
+            degree: [0; 2],
+            transform: Transform::Dispatch,
+        }
     }
 
-    fn add(&mut self, index: u32, size: DVec2, weight: f64) {
-        self.members.push(index);
+    fn add(&mut self, size: DVec2, weight: f64) {
         self.ghosts += 1;
         self.smallest = self.smallest.min(size);
+        self.largest = self.largest.max(size);
         self.weight += weight;
     }
 
     fn join(&mut self, other: &Self) {
-        self.members.extend(&other.members);
         self.ghosts += other.ghosts;
         self.smallest = self.smallest.min(other.smallest);
+        self.largest = self.largest.max(other.largest);
         self.weight += other.weight;
     }
 }

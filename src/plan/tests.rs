@@ -76,7 +76,7 @@ fn groups_hold_every_kept_ghost_once_and_sizes_within_half_an_octave() {
         ghosts.push(ghost([0.01 * f64::from(k), 0.0], [size, 0.3]));
     }
     let plan = plan(&ghosts, &Request::new(Frame::full(64, 36), 1e-2)).unwrap();
-    let mut members: Vec<u32> = plan.groups.iter().flat_map(|group| group.members.clone()).collect();
+    let mut members: Vec<u32> = plan.groups.iter().flat_map(|group| group.members.iter().copied()).collect();
     members.sort_unstable();
     assert!(members.windows(2).all(|pair| pair[0] < pair[1]), "no ghost twice");
     assert_eq!(members.len() + plan.dropped, ghosts.len());

@@ -26,6 +26,8 @@ pub(super) struct Weighed {
     pub peaks: Vec<[i32; 2]>,
     /// For each ghost its peak in units of the scale, the strongest colour; 0 for those that are dropped.
     pub weights: Vec<f64>,
+    /// The sum of the weights.
+    pub weight: f64,
     /// For each ghost how far the nearest pixel is from its centre, in sizes.
     pub nearest: Vec<DVec2>,
     /// How many are dropped, and at most how much that changes at any pixel.
@@ -36,15 +38,22 @@ pub(super) struct Weighed {
 /// Weighs the ghosts against the picture.
 pub(super) fn weigh(ghosts: &[Ghost], request: &Request) -> Weighed {
     let frame = request.frame;
-    let nearest: Vec<DVec2> = ghosts.par_iter().map(|ghost| nearest_offset(ghost, frame)).collect();
-    let shares: Vec<f64> = ghosts.par_iter().zip(&nearest).map(|(ghost, &offset)| reached(ghost, offset)).collect();
+    let seen = |ghost| {
+        let offset = nearest_offset(ghost, frame);
+        (offset, reached(ghost, offset.abs()))
+    };
+    let (nearest, shares): (Vec<DVec2>, Vec<f64>) = ghosts.par_iter().map(seen).unzip();
     let peaks = probes(ghosts, &shares, frame);
     let points: Vec<DVec2> = peaks.iter().map(|&[i, j]| frame.position(f64::from(i), f64::from(j))).collect();
-    let scale = scale(ghosts, &nearest, &points, request.tolerance);
-    let mut weights: Vec<f64> = ghosts.par_iter().map(|ghost| peak_weight(ghost, scale)).collect();
-    let reached: Vec<f64> = shares.iter().zip(&weights).map(|(share, weight)| weight * share).collect();
+    let scale = scale(ghosts, &shares, &points, request.tolerance);
+    let weighed = |(ghost, share): (&Ghost, &f64)| {
+        let weight = peak_weight(ghost, scale);
+        (weight, weight * share)
+    };
+    let (mut weights, reached): (Vec<f64>, Vec<f64>) = ghosts.par_iter().zip(&shares).map(weighed).unzip();
     let (dropped, dropped_error) = drop_faint(&mut weights, &reached, share::DROPPED * request.tolerance);
-    Weighed { scale, peaks, weights, nearest, dropped, dropped_error }
+    let weight = weights.iter().sum();
+    Weighed { scale, peaks, weights, weight, nearest, dropped, dropped_error }
 }
 
 /// The unit of each colour: the largest value found.
@@ -52,7 +61,7 @@ pub(super) fn weigh(ghosts: &[Ghost], request: &Request) -> Weighed {
 /// A colour of which nothing reaches the picture is held against the others' scale: nothing is not to be computed to a
 /// thousandth of itself. Where that is so for all of them, what cancels is the scale, or else what the ghosts are at their
 /// centres.
-fn scale(ghosts: &[Ghost], nearest: &[DVec2], points: &[DVec2], tolerance: f64) -> [f64; 3] {
+fn scale(ghosts: &[Ghost], shares: &[f64], points: &[DVec2], tolerance: f64) -> [f64; 3] {
     let (mut net, mut gross) = ([0.0f64; 3], [0.0f64; 3]);
     for (value, magnitude) in sums_at(ghosts, points) {
         for colour in 0..3 {
@@ -62,16 +71,12 @@ fn scale(ghosts: &[Ghost], nearest: &[DVec2], points: &[DVec2], tolerance: f64) 
     }
     // The brightest of the ghosts that matter to the picture: one that is out of its reach may be as bright as it likes.
     let matters = net.map(|net| share::DROPPED * tolerance * net / ghosts.len().max(1) as f64);
-    let mut brightest = [0.0f64; 3];
-    for (ghost, &offset) in ghosts.iter().zip(nearest) {
-        let reached = reached(ghost, offset);
-        for colour in 0..3 {
-            let radiance = ghost.radiance[colour].abs();
-            if radiance * reached > matters[colour] {
-                brightest[colour] = brightest[colour].max(radiance);
-            }
-        }
-    }
+    let matter = |(ghost, share): (&Ghost, &f64)| {
+        let radiance = ghost.radiance.map(f64::abs);
+        [0, 1, 2].map(|colour| if radiance[colour] * share > matters[colour] { radiance[colour] } else { 0.0 })
+    };
+    let brighter = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|colour| a[colour].max(b[colour]));
+    let brightest = ghosts.par_iter().zip(shares).map(matter).reduce(|| [0.0; 3], brighter);
     let nothing = [0, 1, 2].map(|colour| (UNSEEN * brightest[colour]).max(CANCELLED * gross[colour]));
     let seen = [0, 1, 2].map(|colour| if net[colour] > nothing[colour] { net[colour] } else { 0.0 });
     let largest = |values: [f64; 3]| values.into_iter().fold(0.0, f64::max);

@@ -6,8 +6,9 @@ use super::settings::{Normalize, Settings};
 use crate::gpu::composite::{Composite, Variant};
 use crate::gpu::field::Source;
 use crate::gpu::layout::{DirectGhost, SpectralGhost};
-use crate::plan::{Evaluator, Group, Plan};
+use crate::plan::{Evaluator, Group, Plan, Transform};
 use crate::scene::Ghost;
+use crate::series::moments::{Cells, Point, Sums};
 use crate::series::{Bell, phase};
 
 /// The GLSL function that a plan's evaluator has readied; for `direct` there may be too many ghosts for a uniform block.
@@ -55,11 +56,21 @@ pub(super) fn spectral_ghosts(ghosts: &[Ghost], plan: &Plan, members: &[u32]) ->
         SpectralGhost {
             phase: [phase(ghost.center.x, plan.period.x), phase(ghost.center.y, plan.period.y)],
             size: [size.x as f32, size.y as f32],
-            weight: weight(ghost, plan),
+            weight: weight(ghost, plan).map(|weight| weight as f32),
             pad: 0.0,
         }
     };
     members.iter().map(convert).collect()
+}
+
+/// The sums over the ghosts of a group, gathered from the moments of cells.
+pub(super) fn gathered(ghosts: &[Ghost], plan: &Plan, group: &Group, cells: &Cells) -> Vec<Sums> {
+    let point = |k: usize| {
+        let ghost = &ghosts[group.members[k] as usize];
+        let turns = ghost.center / plan.period;
+        Point { turns: (turns - turns.floor()).to_array(), weight: weight(ghost, plan) }
+    };
+    cells.sums(group.members.len(), point, group.degree)
 }
 
 /// All ghosts that the plan keeps, as the direct sum takes them, and the parameters of their bells.
@@ -87,7 +98,7 @@ pub(super) fn direct_ghosts(ghosts: &[Ghost], plan: &Plan) -> (Vec<DirectGhost>,
             DirectGhost {
                 center: [ghost.center.x as f32, ghost.center.y as f32],
                 inverse_size: [inverse.x as f32, inverse.y as f32],
-                weight: weight(ghost, plan),
+                weight: weight(ghost, plan).map(|weight| weight as f32),
                 bell,
             }
         }));
@@ -100,7 +111,8 @@ pub(super) fn table(plan: &Plan, group: &Group) -> Option<Vec<[f32; 4]>> {
     let shape = group.bell.shape();
     let single = |coefficient: [f64; 4]| coefficient.map(|x| x as f32);
     let table = || shape.modes().table(&plan.counts, group.smallest / plan.period);
-    shape.tabulated().then(|| table().into_iter().map(single).collect())
+    let tabulated = shape.tabulated() || group.transform != Transform::Dispatch;
+    tabulated.then(|| table().into_iter().map(single).collect())
 }
 
 /// The composite's uniforms.
@@ -116,9 +128,9 @@ pub(super) fn uniforms(plan: &Plan, settings: &Settings) -> Composite {
     }
 }
 
-fn weight(ghost: &Ghost, plan: &Plan) -> [f32; 3] {
+fn weight(ghost: &Ghost, plan: &Plan) -> [f64; 3] {
     // The plan drops what is brighter, because too little of it reaches the picture; but a ghost may be kept for another
     // of its colours.
     const BRIGHTEST: f64 = 1e36;
-    [0, 1, 2].map(|colour| (ghost.radiance[colour] / plan.scale[colour]).clamp(-BRIGHTEST, BRIGHTEST) as f32)
+    [0, 1, 2].map(|colour| (ghost.radiance[colour] / plan.scale[colour]).clamp(-BRIGHTEST, BRIGHTEST))
 }

@@ -3,13 +3,15 @@
 //! The notes count in units of their own, over x from −8 to 8, say. The renderer's frame counts in half picture heights.
 //! A [`Canvas`] turns one into the other, each axis for itself, so that a window may be stretched as the prototype's was.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 
 use super::chart::{Axis, Chart, Map, Scalar};
 use super::report::{Field, Figure};
 use crate::Result;
 use crate::frame::Frame;
-use crate::plan::{Evaluator, Group, Plan, Prediction};
+use crate::plan::{Evaluator, Group, Plan, Prediction, Transform};
 use crate::renderer::{Renderer, Settings};
 use crate::scene::Ghost;
 use crate::series::Bell;
@@ -120,11 +122,13 @@ impl Scene {
         let counts = vec![self.degree[1] + 1; self.degree[0] as usize + 1];
         let group = Group {
             bell: self.bell.clone(),
-            members: (0..self.centers.len() as u32).collect(),
+            members: Arc::new((0..self.centers.len() as u32).collect()),
             ghosts: self.centers.len(),
             smallest: self.size * canvas.scale,
+            largest: self.size * canvas.scale,
             weight: self.centers.len() as f64,
             degree: self.degree,
+            transform: Transform::Dispatch,
         };
         Plan {
             tolerance: f64::INFINITY,

@@ -18,6 +18,7 @@ mod bell;
 mod cosine_squared;
 pub mod fourier_bessel;
 mod gaussian;
+pub mod moments;
 pub mod numeric;
 mod parabola;
 mod paraboloid;

@@ -12,6 +12,7 @@ mod fourier_bessel;
 mod golden;
 mod graf;
 mod layers;
+mod moments;
 mod numeric;
 mod order;
 mod orientation;

@@ -45,7 +45,7 @@ fn series_at(ghosts: &[Ghost], plan: &Plan, points: &[DVec2]) -> Vec<[f64; 3]> {
 
 /// The ghosts that a plan keeps.
 fn kept(ghosts: &[Ghost], plan: &Plan) -> Vec<Ghost> {
-    plan.groups.iter().flat_map(|group| &group.members).map(|&index| ghosts[index as usize].clone()).collect()
+    plan.groups.iter().flat_map(|group| group.members.iter()).map(|&index| ghosts[index as usize].clone()).collect()
 }
 
 #[test]

@@ -10,7 +10,7 @@ use super::stage::{Arm, Stage};
 use crate::Result;
 use crate::frame::Frame;
 use crate::measure::interleave;
-use crate::plan::{Evaluator, Lattice, Plan, Request, plan};
+use crate::plan::{Evaluator, Lattice, Plan, Request, Transform, plan};
 use crate::scene::Ghost;
 
 /// The bar of the default path: a spectrum and a frame, in copies.
@@ -116,5 +116,9 @@ pub(super) fn described(plan: &Plan) -> String {
     let [n, m] = plan.degree;
     let lattice = plan.lattice.map(|Lattice { nodes: [x, y], .. }| format!(", a lattice of {x} × {y} nodes"));
     let groups = plan.groups.len();
-    format!("N = {n}, M = {m}, {} terms, {groups} groups{}.", plan.terms, lattice.unwrap_or_default())
+    let gathered = match plan.groups.iter().filter(|group| group.transform != Transform::Dispatch).count() {
+        0 => String::new(),
+        gathered => format!(", {gathered} of them gathered"),
+    };
+    format!("N = {n}, M = {m}, {} terms, {groups} groups{gathered}{}.", plan.terms, lattice.unwrap_or_default())
 }

@@ -10,9 +10,10 @@ use crate::cli::bench::scenes::scattered;
 use crate::frame::Frame;
 use crate::gpu::Device;
 use crate::measure::Rounds;
-use crate::plan::{Evaluator, Lattice, Plan, Request, plan};
+use crate::plan::{Evaluator, Lattice, Plan, Request, Transform, plan};
 use crate::renderer::{Renderer, Settings};
 use crate::scene::Ghost;
+use crate::series::moments::Cells;
 
 /// Milliseconds that a timing should take at least: so much that the clock and the waiting do not count.
 const LONG_ENOUGH: f64 = 8.0;
@@ -72,7 +73,8 @@ pub(super) mod place {
     /// A coarse lattice; a fine one; the coarse one under a wide picture.
     pub const GRID: [usize; 3] = [9, 10, 11];
     pub const SPECTRUM: [usize; 2] = [12, 13];
-    pub const TINY: usize = 14;
+    pub const MOMENTS: [usize; 2] = [14, 15];
+    pub const TINY: usize = 16;
 }
 
 /// The narrow picture, the wide one and the tiny one, in pixels: a graphics card needs more to do.
@@ -114,6 +116,8 @@ impl Arms {
             arm(Work::Frame, 1, 4, &|ghosts, frame| grid(ghosts, frame, 20)),
             arm(Work::Spectrum, 0, 100, &rows([31, 31])),
             arm(Work::Spectrum, 0, 1000, &rows([31, 31])),
+            arm(Work::Spectrum, 0, 1000, &gathered),
+            arm(Work::Spectrum, 0, 11_000, &gathered),
             arm(Work::Everything, 2, 4, &|ghosts, frame| grid(ghosts, frame, 8)),
         ]
         .into_iter()
@@ -178,6 +182,22 @@ fn by_hand(ghosts: &[Ghost], frame: Frame, evaluator: Evaluator, degree: [u32; 2
     let aspect = f64::from(frame.width) / f64::from(frame.height);
     let period = Some(DVec2::new(2.0 * aspect + 2.0, 4.0));
     plan(ghosts, &Request { period, degree: Some(degree), evaluator: Some(evaluator), ..Request::new(frame, 1e-2) })
+}
+
+/// A few modes, gathered from cells of many moments. Sizes differ, and the error does not matter here.
+fn gathered(ghosts: &[Ghost], frame: Frame) -> Result<Plan> {
+    let mut plan = by_hand(ghosts, frame, Evaluator::Rows, [2, 2])?;
+    for group in &mut plan.groups {
+        group.transform = Transform::Gather(CELLS);
+    }
+    Ok(plan)
+}
+
+const CELLS: Cells = Cells { counts: [8, 8], orders: [12, 12] };
+
+/// What a plan's gathered ghosts have to do each, in moments.
+pub(super) fn moments(plan: &Plan) -> f64 {
+    plan.groups.first().map_or(0.0, |group| group.transform.moments())
 }
 
 /// By `grid`, with hardly any terms, on a lattice of so many columns and few lines.

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use super::arms::{Arm, Arms, place};
+use super::arms::{Arm, Arms, moments, place};
 use crate::gpu::Device;
 use crate::measure::{Rounds, Samples};
 use crate::plan::{CostModel, GRID_PASSES};
@@ -20,7 +20,7 @@ pub(super) struct Constant {
 /// What was measured, in the order of [`CostModel::NAMES`].
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Fitted {
-    pub constants: [Constant; 8],
+    pub constants: [Constant; CostModel::COUNT],
 }
 
 impl Fitted {
@@ -36,12 +36,12 @@ impl Fitted {
 pub(super) fn measure(device: &Rc<Device>, rounds: Rounds) -> Result<Fitted> {
     let mut arms = Arms::new(device)?;
     let times = arms.time(rounds)?;
-    let rounds: Vec<[f64; 8]> = times.iter().map(|times| constants(&arms.all, times)).collect();
+    let rounds: Vec<[f64; CostModel::COUNT]> = times.iter().map(|times| constants(&arms.all, times)).collect();
     fitted(&rounds)
 }
 
 /// The constants of one round in nanoseconds, from the milliseconds of each arm.
-fn constants(arms: &[Arm], times: &[f64]) -> [f64; 8] {
+fn constants(arms: &[Arm], times: &[f64]) -> [f64; CostModel::COUNT] {
     use place::*;
     let more = |[low, high]: [usize; 2]| 1e6 * (times[high] - times[low]);
     let terms = |[low, high]: [usize; 2]| arms[high].plan.terms as f64 - arms[low].plan.terms as f64;
@@ -65,17 +65,18 @@ fn constants(arms: &[Arm], times: &[f64]) -> [f64; 8] {
     let interpolation = (more([coarse, spread]) - more([COPY, COPY_WIDE])) / wider;
     let modes = arms[SPECTRUM[0]].plan.terms as f64;
     let spectrum = more(SPECTRUM) / (ghosts(SPECTRUM) * modes);
+    let moment = more(MOMENTS) / (ghosts(MOMENTS) * moments(&arms[MOMENTS[0]].plan));
     let pass = 1e6 * times[TINY] / GRID_PASSES;
-    [bell, term, harmonic, profile, strip, interpolation, spectrum, pass]
+    [bell, term, harmonic, profile, strip, interpolation, spectrum, moment, pass]
 }
 
 /// The medians of the rounds; what is lost in noise follows the others.
 ///
 /// # Errors
 /// [`Error::Gl`] where half of the constants or more are.
-fn fitted(rounds: &[[f64; 8]]) -> Result<Fitted> {
+fn fitted(rounds: &[[f64; CostModel::COUNT]]) -> Result<Fitted> {
     let built_in = CostModel::default().values();
-    let samples: [Samples; 8] = std::array::from_fn(|k| rounds.iter().map(|round| round[k]).collect());
+    let samples: [Samples; CostModel::COUNT] = std::array::from_fn(|k| rounds.iter().map(|round| round[k]).collect());
     let told =
         samples.each_ref().map(|samples| Some(samples.median()).filter(|&value| value.is_finite() && value > 0.0));
     let ratios: Samples =
@@ -108,14 +109,14 @@ mod tests {
         let [expected, got] = [built_in.map(|value| 0.25 * value), fitted.model().values()];
         assert!(expected.iter().zip(got).all(|(a, b)| (a / b - 1.0).abs() < 1e-12), "{got:?}");
         let scaled: Vec<_> = fitted.constants.iter().map(|constant| constant.spread.is_none()).collect();
-        assert_eq!(scaled, [false, false, false, false, true, false, false, false]);
+        assert_eq!(scaled, [false, false, false, false, true, false, false, false, false]);
         assert!(fitted.model().is_sound());
     }
 
     #[test]
     fn noise_alone_is_no_calibration() {
         let mut round = CostModel::default().values();
-        round[..4].fill(f64::NAN);
+        round[..CostModel::COUNT.div_ceil(2)].fill(f64::NAN);
         assert!(fitted(&[round]).is_err());
     }
 
@@ -153,6 +154,7 @@ mod tests {
             k if SERIES.contains(&k) => base + arm.pixels() * terms * model.term,
             k if ROWS.contains(&k) => base + rows(arm.rows(), arm.pixels() / arm.rows()),
             k if SPECTRUM.contains(&k) => plan.ghosts() as f64 * terms * model.spectrum,
+            k if MOMENTS.contains(&k) => plan.ghosts() as f64 * moments(plan) * model.moment,
             TINY => GRID_PASSES * model.pass,
             _ => {
                 let [columns, lines] = plan.lattice.unwrap().nodes.map(f64::from);

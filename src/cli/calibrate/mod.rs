@@ -18,7 +18,7 @@ use fit::Fitted;
 
 /// Measure what each kind of work costs on this machine, and keep it
 ///
-/// The plan chooses how to compute the glare by eight constants, and --budget counts in them. This measures them: small
+/// The plan chooses how to compute the glare by nine constants, and --budget counts in them. This measures them: small
 /// pictures in turns, in pairs that differ in one kind of work, medians of several rounds. They are kept in the user's
 /// cache folder (VGLARE_CACHE names another) for this renderer, driver and version of vglare, and the other commands
 /// take them from there unless --no-calibration is given. Measure while the machine does nothing else.
@@ -49,7 +49,7 @@ Examples:
   vglare calibrate --forget    Back to the built-in constants";
 
 /// What the constants stand for, in the order of [`CostModel::NAMES`].
-const MEANINGS: [&str; 8] = [
+const MEANINGS: [&str; CostModel::COUNT] = [
     "a bell at a pixel, by direct",
     "a term at a pixel, by series",
     "a harmonic of x at a pixel, by rows",
@@ -57,6 +57,7 @@ const MEANINGS: [&str; 8] = [
     "a cell of the lattice along a row, by grid",
     "an interpolation at a pixel, by grid",
     "a term of a ghost, in the spectrum",
+    "a moment of a ghost, in a gathered spectrum",
     "starting a pass",
 ];
 

@@ -3,7 +3,8 @@
 use std::io::{self, Write};
 
 use crate::cli::accuracy::Planned;
-use crate::plan::{Group, Plan};
+use crate::plan::{Group, Plan, Transform};
+use crate::series::moments::Cells;
 
 /// Groups that are told one by one.
 const GROUPS: usize = 12;
@@ -45,9 +46,18 @@ pub fn details(out: &mut dyn Write, planned: &Planned) -> io::Result<()> {
 fn groups(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
     for (index, group) in plan.groups.iter().take(GROUPS).enumerate() {
         let label = if index == 0 { "groups" } else { "" };
-        let Group { bell, ghosts, smallest, degree: [n, m], .. } = group;
-        write!(out, "{label:<9}{ghosts} {bell} of {:.3} x {:.3} and more", smallest.x, smallest.y)?;
-        if plan.terms > 0 { writeln!(out, ", degree {n} x {m}")? } else { writeln!(out)? }
+        let Group { bell, ghosts, smallest, largest, degree: [n, m], .. } = group;
+        let more = if largest == smallest { "" } else { " and more" };
+        write!(out, "{label:<9}{ghosts} {bell} of {:.3} x {:.3}{more}", smallest.x, smallest.y)?;
+        if plan.terms > 0 {
+            write!(out, ", degree {n} x {m}")?;
+        }
+        match group.transform {
+            Transform::Dispatch => writeln!(out)?,
+            Transform::Gather(Cells { counts: [x, y], orders: [p, q] }) => {
+                writeln!(out, ", gathered in {x} x {y} cells of {p} x {q} moments")?;
+            }
+        }
     }
     match plan.groups.len().saturating_sub(GROUPS) {
         0 => Ok(()),
@@ -62,6 +72,7 @@ fn errors(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
         ("", "from wrapped copies (periodisation)", error.periodisation),
         ("", "from harmonics left out (truncation)", error.truncation),
         ("", "from interpolation", error.interpolation),
+        ("", "from moments left out (gathering)", error.gathering),
         ("", "from rounding", error.rounding),
         ("", "in all (total)", error.total()),
     ] {

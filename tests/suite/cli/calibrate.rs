@@ -64,6 +64,15 @@ fn what_was_kept_decides_for_its_renderer_and_version_only() {
     keep(&place, env!("CARGO_PKG_VERSION"), &cheap_bells);
     assert_eq!(plan(&[])["plan"]["evaluator"], "direct");
     assert_eq!(plan(&["--no-calibration"])["plan"]["evaluator"], "grid");
+    // One from before spectra were gathered knows nothing of moments.
+    let mut older = cheap_bells.clone();
+    older.as_object_mut().expect("an object").remove("moment");
+    keep(&place, env!("CARGO_PKG_VERSION"), &older);
+    let by_older = plan(&[]);
+    assert_eq!(
+        (&by_older["plan"]["evaluator"], &by_older["model"]["source"]),
+        (&json!("direct"), &json!("calibrated"))
+    );
     keep(&place, "0.0.0", &cheap_bells);
     let other = plan(&[]);
     assert_eq!((&other["plan"]["evaluator"], &other["model"]["source"]), (&json!("grid"), &json!("built-in")));
