@@ -92,7 +92,9 @@ struct Place {
 impl Place {
     fn new(ghost: &Ghost, distance: f64) -> Self {
         let shape = ghost.bell.shape();
-        Self { value: shape.along(distance, 1.0), steepest: shape.steepest(distance), squared: distance * distance }
+        // A periodic bell is near again farther on, and its value bounded by 1; exp(−E) (1 + E) is below 1 for every E.
+        let squared = if shape.period().is_some() { 0.0 } else { distance * distance };
+        Self { value: shape.along(distance, 1.0), steepest: shape.steepest(distance), squared }
     }
 }
 

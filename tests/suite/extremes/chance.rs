@@ -96,7 +96,7 @@ fn scene(seed: u64) -> Scene {
             }
         }
     }
-    panic!("scene {seed} has no plan: {reasons:?}")
+    panic!("scene {seed} has no plan at {tolerance:e}: {reasons:?} {:?}", frame)
 }
 
 /// The value that a part of the sorted values stays below.
