@@ -4,8 +4,8 @@ use super::{Evaluator, Plan, Request, gather};
 
 /// Nanoseconds that each kind of work takes on one machine; every one of them finite and above 0.
 ///
-/// The [`Default`] is a software renderer (llvmpipe, 256 bits) on two cores at 1920 × 1080: medians of one run of
-/// `vglare bench --rounds 8`, less what a copy takes, divided by the work; while a copy took 3 to 5 ns a pixel. To choose
+/// The [`Default`] is a software renderer (llvmpipe, 256 bits) on two cores: about the middle of three runs of
+/// `vglare calibrate` while little else ran. To choose
 /// an evaluator the plan needs their ratios only; a budget in milliseconds needs the values of the machine at hand,
 /// which `vglare calibrate` measures.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -35,22 +35,20 @@ pub struct CostModel {
 impl Default for CostModel {
     fn default() -> Self {
         Self {
-            bell: 4.0,          // K = 45
-            term: 5.4,          // N = M = 10
-            harmonic: 2.8,      // N = 10 (3.0) and 57 (2.7)
-            profile: 7.0,       // N = 57
-            strip: 27.0,        // K = 1000 (25) and 45 (36)
-            interpolation: 7.5, // the same two (7.3 and 8.4)
-            // K = 1000 (3 to 8, with what else the machine did) and, at N = M = 10 where half of the tiles' modes are
-            // idle, K = 100,000 (16).
-            spectrum: 6.0,
+            bell: 1.9,
+            term: 7.0,
+            harmonic: 3.2,
+            profile: 12.0,
+            strip: 28.0,
+            interpolation: 8.5,
+            spectrum: 8.0,
             moment: built_in_moment(),
-            pass: 100_000.0, // what the smallest take
+            pass: 130_000.0,
         }
     }
 }
 
-/// K = 1000 and 11,000 with 144 moments each, two threads, by `vglare calibrate` on a busy machine (0.76).
+/// As the others; K = 1000 and 11,000 with 144 moments each.
 fn built_in_moment() -> f64 {
     0.8
 }
@@ -100,7 +98,10 @@ pub(super) fn estimate(plan: &Plan, request: &Request) -> Cost {
     };
     let spectrum: f64 = plan.groups.iter().map(|group| gather::cost(group, &group.transform, &model)).sum();
     let field = match plan.evaluator {
-        Evaluator::Direct => pixels * plan.ghosts() as f64 * model.bell * slower(plan.ghosts()) + model.pass,
+        Evaluator::Direct => {
+            let bells = plan.ghosts() as f64 * slower(plan.ghosts()) + AROUND_BELLS;
+            pixels * bells * model.bell + model.pass
+        }
         Evaluator::Series => spectrum + pixels * plan.terms as f64 * model.term + 4.0 * model.pass,
         Evaluator::Rows => spectrum + rows(f64::from(window.height), f64::from(window.width)) + 5.0 * model.pass,
         Evaluator::Grid => {
@@ -111,6 +112,9 @@ pub(super) fn estimate(plan: &Plan, request: &Request) -> Cost {
     };
     Cost { evaluator: plan.evaluator, milliseconds: field * 1e-6 }
 }
+
+/// What `direct` does at a pixel beside its bells, in bells: 2 to 3 on llvmpipe, for 1 to 6 ghosts.
+const AROUND_BELLS: f64 = 2.5;
 
 /// How many times as long `direct` takes for a bell where there are more ghosts than a uniform block holds: 3 to 5 times
 /// on llvmpipe, and a graphics card has other reasons to take the series then.
