@@ -17,6 +17,16 @@ const EFFORT: usize = 1_000_000;
 /// Ghosts that one task goes through. Tasks are joined in their order, whatever the number of cores.
 const CHUNK: usize = 128;
 
+/// Whether so many ghosts could be looked at in a series of a few modes.
+pub(super) fn worth_a_try(groups: &[Group]) -> bool {
+    const FEW: usize = 16;
+    FEW * members(groups) <= EFFORT
+}
+
+fn members(groups: &[Group]) -> usize {
+    groups.iter().map(|group| group.members.len()).sum()
+}
+
 /// Red, green, blue; or their bounds.
 pub(super) type Rgb = [f64; 3];
 
@@ -41,8 +51,7 @@ impl Amplitudes {
     /// and at most κ/2 (|Z₊| + |Z₋|). For a radial bell the transform stands before the sum instead.
     pub fn new(ghosts: &[Ghost], groups: &[Group], counts: &[u32], period: DVec2, scale: Rgb) -> Option<Self> {
         let modes: usize = counts.iter().map(|&count| count as usize).sum();
-        let members: usize = groups.iter().map(|group| group.members.len()).sum();
-        if modes.saturating_mul(members) > EFFORT {
+        if modes.saturating_mul(members(groups)) > EFFORT {
             return None;
         }
         let view = View { ghosts, counts, period, scale };

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::slots::{Slots, by_chunks};
-use super::weigh::Weighed;
+use super::weigh::{Weighed, along};
 use crate::frame::Frame;
 use crate::scene::Ghost;
 use crate::series::{Bell, Modes, Shape};
@@ -23,12 +23,12 @@ pub(super) struct Reach {
 impl Reach {
     fn new(ghost: &Ghost, weight: f64, [low, high]: [DVec2; 2]) -> Self {
         let shape = ghost.bell.shape();
-        let offset = ghost.center.clamp(low, high) - ghost.center;
+        let offset = (ghost.center.clamp(low, high) - ghost.center) / ghost.size;
         Self {
             bell: ghost.bell.clone(),
             size: ghost.size,
             farthest: (ghost.center - low).abs().max((high - ghost.center).abs()),
-            nearest: DVec2::new(shape.along(offset.x, ghost.size.x), shape.along(offset.y, ghost.size.y)),
+            nearest: DVec2::new(along(shape, offset.x.abs()), along(shape, offset.y.abs())),
             weight,
         }
     }

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::Evaluator;
 use super::slots::by_chunks;
-use super::weigh::Weighed;
+use super::weigh::{Weighed, along};
 use crate::frame::Frame;
 use crate::scene::Ghost;
 
@@ -94,7 +94,7 @@ impl Place {
         let shape = ghost.bell.shape();
         // A periodic bell is near again farther on, and its value bounded by 1; exp(−E) (1 + E) is below 1 for every E.
         let squared = if shape.period().is_some() { 0.0 } else { distance * distance };
-        Self { value: shape.along(distance, 1.0), steepest: shape.steepest(distance), squared }
+        Self { value: along(shape, distance), steepest: shape.steepest(distance), squared }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::amplitudes::Amplitudes;
+use super::amplitudes::{self, Amplitudes};
 use super::lattice::{self, Marginals};
 use super::{Evaluator, Group, Plan, Request, Survey, cost, gather, period, rounding, share, terms};
 use crate::scene::Ghost;
@@ -24,7 +24,8 @@ pub(super) struct Wide {
 impl Wide {
     /// None where looking at every ghost's phases takes too long, or where the series is given.
     pub fn new(ghosts: &[Ghost], survey: &Survey, request: &Request) -> Option<Self> {
-        if request.degree.is_some() || request.evaluator == Some(Evaluator::Direct) {
+        let given = request.degree.is_some() || request.evaluator == Some(Evaluator::Direct);
+        if given || !amplitudes::worth_a_try(&survey.groups) {
             return None;
         }
         let rounding = rounding::bound(ghosts, &survey.weighed, request.frame, Evaluator::Grid, rounding::SEEN_DEGREE);

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::{Request, share};
 use crate::frame::Frame;
 use crate::scene::Ghost;
+use crate::series::Shape;
 
 /// Evaluations of a bell that finding the scale may cost.
 const EFFORT: usize = 400_000;
@@ -105,7 +106,13 @@ fn sums_at(ghosts: &[Ghost], points: &[DVec2]) -> Vec<([f64; 3], [f64; 3])> {
 /// What a bell of peak 1 is at most at any pixel, the nearest of which is `offset` sizes away.
 fn reached(ghost: &Ghost, offset: DVec2) -> f64 {
     let shape = ghost.bell.shape();
-    shape.along(offset.x, 1.0) * shape.along(offset.y, 1.0)
+    along(shape, offset.x) * along(shape, offset.y)
+}
+
+/// What a bell of peak 1 is at most at some distance or farther along an axis, in sizes. Where most ghosts stand, within a
+/// hundredth of their size of a pixel, that is 1, and no exponential is worth its time.
+pub(super) fn along(shape: &dyn Shape, distance: f64) -> f64 {
+    if distance < 0.01 { 1.0 } else { shape.along(distance, 1.0) }
 }
 
 fn peak_weight(ghost: &Ghost, scale: [f64; 3]) -> f64 {
