@@ -12,8 +12,8 @@ use super::Group;
 use crate::scene::Ghost;
 use crate::series::{Factor, Modes, kappa};
 
-/// Ghosts times modes that are looked at, at most: a few milliseconds on one core.
-const EFFORT: usize = 1_000_000;
+/// Ghosts times modes that are looked at, at most: some ten milliseconds, and less than a dispatch over them would take.
+const EFFORT: usize = 8_000_000;
 /// Ghosts that one task goes through. Tasks are joined in their order, whatever the number of cores.
 const CHUNK: usize = 128;
 

@@ -127,7 +127,8 @@ fn a_given_oversampling_is_taken_and_its_bound_falls_with_the_fourth_power() {
 /// The amplitudes of the first 13 x 9 modes of some ghosts in a period of 8 x 6, in their own units.
 fn amplitudes_of(ghosts: &[Ghost]) -> (Amplitudes, Vec<u32>, DVec2) {
     let period = DVec2::new(8.0, 6.0);
-    let request = Request { period: Some(period), ..Request::new(Frame::full(64, 36), 1e-6) };
+    // So wide that none is dropped.
+    let request = Request { period: Some(period), ..Request::new(Frame::full(320, 36), 1e-6) };
     let mut survey = Survey::new(ghosts, &request);
     let counts = terms::rectangle(&mut survey.groups, [12, 8]);
     let amplitudes = Amplitudes::new(ghosts, &survey.groups, &counts, period, [1.0; 3]).unwrap();
@@ -188,7 +189,7 @@ fn amplitudes_know_which_ghosts_add_up_and_which_cancel() {
 
 #[test]
 fn too_many_ghosts_for_their_modes_are_not_looked_at() {
-    let ghosts = vec![ghost([0.1, 0.1], [0.3, 0.3]); 20_000];
+    let ghosts = vec![ghost([0.1, 0.1], [0.3, 0.3]); 80_000];
     let mut survey = Survey::new(&ghosts, &Request::new(Frame::full(64, 36), 1e-3));
     let counts = terms::rectangle(&mut survey.groups, [12, 8]);
     assert!(Amplitudes::new(&ghosts, &survey.groups, &counts, DVec2::ONE, [1.0; 3]).is_none());
