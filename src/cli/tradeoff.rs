@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use comfy_table::{CellAlignment, Table, presets};
 
+use super::calibration::CalibrationArgs;
 use super::lights::FindArgs;
 use super::progress::Progress;
 use super::scene::{Files, SceneArgs};
@@ -49,6 +50,9 @@ pub struct Args {
 
     #[command(flatten)]
     find: FindArgs,
+
+    #[command(flatten)]
+    calibration: CalibrationArgs,
 }
 
 const EXAMPLES: &str = "\
@@ -76,7 +80,12 @@ pub fn run(args: &Args) -> Result<()> {
     let subject = Subject::new(&name, &photo, &scene.ghosts)?;
     tradeoff::check(&args.output, args.force)?;
     let device = Device::open(args.backend.backends())?;
-    let results = tradeoff::measure(&subject, &device, args.quick, &mut |what, done| progress.part(what, done))?;
+    let known = args.calibration.known(Some(device.info()));
+    if let Some(warning) = &known.warning {
+        eprintln!("vglare: warning: {warning}");
+    }
+    let costs = known.file.is_some().then_some(known.model);
+    let results = tradeoff::measure(&subject, &device, costs, args.quick, &mut |what, done| progress.part(what, done))?;
     progress.step("writing");
     let index = tradeoff::write(&args.output, &results)?;
     drop(progress);

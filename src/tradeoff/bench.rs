@@ -7,7 +7,7 @@ use crate::Result;
 use crate::frame::{Frame, Window};
 use crate::gpu::Device;
 use crate::measure::{Rounds, Samples, in_turns};
-use crate::plan::{Evaluator, Plan, Request};
+use crate::plan::{CostModel, Evaluator, Plan, Request};
 use crate::renderer::{Renderer, Settings};
 use crate::scene::Ghost;
 
@@ -17,6 +17,8 @@ const TRY: u32 = 64;
 /// The renderer, and how often and how long to measure.
 pub(super) struct Bench {
     device: Rc<Device>,
+    /// What plans reckon with.
+    cost_model: CostModel,
     pub renderer: Renderer,
     pub rounds: Rounds,
     /// How long one draw of a slow evaluator may take, in milliseconds: where a picture would take longer, a part of it
@@ -46,11 +48,11 @@ impl Bench {
     ///
     /// # Errors
     /// [`crate::Error::Gl`] where the driver refuses.
-    pub fn new(device: &Rc<Device>, quick: bool, pixels: usize) -> Result<Self> {
+    pub fn new(device: &Rc<Device>, cost_model: CostModel, quick: bool, pixels: usize) -> Result<Self> {
         let mut renderer = Renderer::new(device)?;
         renderer.set_tile_pixels(pixels);
         let (rounds, patience) = if quick { (Rounds::new(1, 4), 40.0) } else { (Rounds::new(2, 10), 250.0) };
-        Ok(Self { device: device.clone(), renderer, rounds, patience })
+        Ok(Self { device: device.clone(), cost_model, renderer, rounds, patience })
     }
 
     /// The device.
@@ -64,6 +66,7 @@ impl Bench {
         Request {
             loop_rounds: info.loop_rounds().unwrap_or(usize::MAX),
             most_terms: (info.limits.storage_block / 48) as usize,
+            cost_model: self.cost_model,
             ..Request::new(frame, tolerance)
         }
     }

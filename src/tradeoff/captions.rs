@@ -82,8 +82,9 @@ pub(super) fn size_plot(results: &Results) -> String {
     };
     let text = format!(
         "The photo’s own ghosts at the recommended tolerance. {}Rings are the planner’s choices, by constants that were \
-         measured on another machine{missed}.",
-        size_note(results)
+         measured {}{missed}.",
+        size_note(results),
+        if results.calibrated { "here by vglare calibrate" } else { "on another machine" }
     );
     text + parts(results, Sweep::Size)
 }

@@ -22,7 +22,7 @@ use serde::Serialize;
 
 use crate::gpu::{Device, Info};
 use crate::photo::Photo;
-use crate::plan::{Evaluator, Request};
+use crate::plan::{CostModel, Evaluator, Request};
 use crate::scene::Ghost;
 use crate::{Error, Result};
 
@@ -73,6 +73,8 @@ pub struct Results {
     pub rounds: usize,
     pub sample: usize,
     pub device: Info,
+    /// Whether the planner reckoned with costs that were measured on this machine.
+    pub calibrated: bool,
     pub recommendation: Option<Recommendation>,
     pub points: Vec<Point>,
     /// The points on the front of the tolerance sweep, by their index, the fastest first.
@@ -98,17 +100,19 @@ const STAGES: [(&str, f64); 7] = [
     ("pictures", 0.05),
 ];
 
-/// Runs all sweeps; `watch` hears what is going on, and how much of all is done, from 0 to 1.
+/// Runs all sweeps, with plans by what was measured of this machine's costs, or else by the built-in ones; `watch` hears
+/// what is going on, and how much of all is done, from 0 to 1.
 ///
 /// # Errors
 /// [`Error::Gl`] where the driver refuses, [`Error::Chart`] where an error map cannot be drawn.
 pub fn measure(
     subject: &Subject<'_>,
     device: &Rc<Device>,
+    costs: Option<CostModel>,
     quick: bool,
     watch: &mut dyn FnMut(&'static str, f64),
 ) -> Result<Results> {
-    let mut study = Study::new(subject, device, quick)?;
+    let mut study = Study::new(subject, device, costs.unwrap_or_default(), quick)?;
     let mut stages = STAGES.iter().scan(0.0, |before, &(name, part)| {
         *before += part;
         Some((name, *before - part, part))
@@ -143,6 +147,7 @@ pub fn measure(
         rounds: study.bench.rounds.timed(),
         sample: study.sample.pixels.len(),
         device: device.info().clone(),
+        calibrated: costs.is_some(),
         recommendation: front::recommend(&points).map(|found| found.seen(seen.unwrap_or(0.0))),
         crossovers: front::crossovers(&points),
         phase_reach: tight

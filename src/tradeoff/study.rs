@@ -14,7 +14,7 @@ use crate::certificate::sample_pixels;
 use crate::frame::Frame;
 use crate::gpu::Device;
 use crate::photo::Photo;
-use crate::plan::{Plan, Request, plan};
+use crate::plan::{CostModel, Plan, Request, plan};
 
 /// Pixels of the pictures that sweeps run at, at most: a quick look, and a thorough one.
 const QUICK_PIXELS: f64 = 3e5;
@@ -36,11 +36,11 @@ pub(super) struct Study<'a> {
 impl<'a> Study<'a> {
     /// # Errors
     /// [`crate::Error::Gl`] where the driver refuses.
-    pub fn new(subject: &'a Subject<'a>, device: &Rc<Device>, quick: bool) -> Result<Self> {
+    pub fn new(subject: &'a Subject<'a>, device: &Rc<Device>, cost_model: CostModel, quick: bool) -> Result<Self> {
         let photo = at_most(subject.photo, if quick { QUICK_PIXELS } else { PIXELS });
         let most = subject.photo.frame.window.pixels().max(photo.pixels.len());
         let most = most.max(subject.photo.width() as usize * subject.photo.height() as usize);
-        let bench = Bench::new(device, quick, most)?;
+        let bench = Bench::new(device, cost_model, quick, most)?;
         // Any plan knows where the field is large; `direct` is there for every scene.
         let mut request = bench.request(photo.frame, 0.5);
         request.evaluator = Some(crate::plan::Evaluator::Direct);
