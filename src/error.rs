@@ -81,6 +81,10 @@ pub enum Error {
     #[error("no OpenGL 4.3 context could be had\n  {}", reasons.join("\n  "))]
     NoContext { reasons: Vec<String> },
 
+    /// There is nothing to open a window on.
+    #[error("no window can be opened: {reason}")]
+    NoDisplay { reason: String },
+
     /// The driver refused something that it should support; a shader that does not compile, for example.
     #[error("OpenGL failed: {0}")]
     Gl(String),
@@ -88,7 +92,7 @@ pub enum Error {
 
 impl Error {
     /// What the program exits with: 1 in general, 2 where the command line asks for the impossible, 3 where the
-    /// tolerance or the budget cannot be or was not met, 4 where there is no OpenGL. (clap's own usage errors exit with 2 as well.)
+    /// tolerance or the budget cannot be or was not met, 4 where there is no OpenGL or no display. (clap's own usage errors exit with 2 as well.)
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Frame { error, .. } | Self::Frames { first: error, .. } => error.exit_code(),
@@ -98,7 +102,7 @@ impl Error {
             | Self::ToleranceMissed { .. }
             | Self::FramesMissed { .. }
             | Self::Missed { .. } => 3,
-            Self::NoContext { .. } => 4,
+            Self::NoContext { .. } | Self::NoDisplay { .. } => 4,
             _ => 1,
         }
     }

@@ -21,6 +21,7 @@
 //! | [`chart`] | numbers → charts and pictures in false colours |
 //! | [`rex`] | the research prototype's experiments, as figures and numbers |
 //! | [`tradeoff`] | a photo and its ghosts → accuracy against time, measured here |
+//! | [`viewer`] | the window: a photo with its glare, live |
 //! | [`cli`] | the commands |
 
 pub mod certificate;
@@ -42,5 +43,6 @@ pub mod scene;
 pub mod series;
 mod target;
 pub mod tradeoff;
+pub mod viewer;
 
 pub use error::{Error, Result};

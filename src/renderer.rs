@@ -17,6 +17,7 @@ mod exchange;
 mod graf;
 mod settings;
 mod tiles;
+mod view;
 
 use std::rc::Rc;
 
@@ -30,6 +31,7 @@ use crate::gpu::field::{FieldPass, Source};
 use crate::gpu::range::RangePass;
 use crate::gpu::runner::Runner;
 use crate::gpu::spectrum::{Coefficients, Ghosts, Spectrum, SpectrumGroup};
+use crate::gpu::view::ViewPass;
 use crate::gpu::{Device, PassTime};
 use crate::plan::{Evaluator, Plan, Transform};
 use crate::scene::Ghost;
@@ -39,6 +41,7 @@ use exchange::Exchange;
 pub use exchange::Pending;
 pub use graf::{GrafRenderer, GrafScene};
 pub use settings::{Normalize, Settings};
+pub use view::View;
 
 /// Holds the scene on the device, and renders pictures with it.
 pub struct Renderer {
@@ -49,6 +52,7 @@ pub struct Renderer {
     range: RangePass,
     composite: CompositePass,
     copy: CopyPass,
+    view: ViewPass,
     exchange: Exchange,
     scene: Option<(Vec<Ghost>, Plan)>,
     /// Room for the next scene's ghosts.
@@ -70,6 +74,7 @@ impl Renderer {
             range: RangePass::new(&runner)?,
             composite: CompositePass::new(&runner)?,
             copy: CopyPass::default(),
+            view: ViewPass::new(&runner)?,
             // The software renderer's memory is the photo's own: there a buffer is one more copy.
             exchange: Exchange::new(!device.info().software),
             scene: None,

@@ -17,6 +17,7 @@ mod scene;
 mod shell;
 mod stdout;
 mod tradeoff;
+mod view;
 
 use clap::{Parser, Subcommand};
 
@@ -40,13 +41,14 @@ Exit codes:
   2  the command line is wrong
   3  the tolerance is below what 32-bit floats can give, or was missed under --strict, or a bench's bar was;
      or the budget is below what the cheapest plan costs
-  4  there is no OpenGL 4.3
+  4  there is no OpenGL 4.3, or no display to open a window on
 
 `vglare COMMAND --help` says more of each command, with examples.";
 
 #[derive(Debug, Subcommand)]
 enum Command {
     Apply(Box<apply::Args>),
+    View(view::Args),
     Plan(Box<plan::Args>),
     Lights(lights::Args),
     Presets(presets::Args),
@@ -67,6 +69,7 @@ enum Command {
 pub fn run(cli: Cli) -> Result<()> {
     match cli.command {
         Command::Apply(args) => apply::run(&args),
+        Command::View(args) => view::run(&args),
         Command::Plan(args) => plan::run(&args),
         Command::Lights(args) => lights::run(&args),
         Command::Presets(args) => presets::run(&args),

@@ -65,6 +65,12 @@ impl CompositePass {
         self.photo.get(runner.device(), Texel::Rgba, width, height)
     }
 
+    /// Frees the photo and what was drawn.
+    pub fn unload(&mut self) {
+        self.photo = Scratch::default();
+        self.picture = Scratch::default();
+    }
+
     /// The tile of the photo as it was last made.
     pub fn loaded(&self) -> Result<&Texture> {
         self.photo.current().ok_or_else(|| Error::Gl("no photo is loaded".into()))

@@ -51,8 +51,11 @@ pub(crate) const PLACES: Binding = ("UNIT_PLACES", 11);
 pub(crate) const RADIAL: Binding = ("UNIT_RADIAL", 12);
 pub(crate) const FOLDED: Binding = ("UNIT_FOLDED", 13);
 
+/// The photo with its glare, where it is looked at.
+pub(crate) const PICTURE: Binding = ("UNIT_PICTURE", 14);
+
 /// Every binding, for the head of every shader.
-pub(crate) const BINDINGS: [Binding; 27] = [
+pub(crate) const BINDINGS: [Binding; 28] = [
     PASS,
     EVALUATOR,
     SAMPLES,
@@ -80,6 +83,7 @@ pub(crate) const BINDINGS: [Binding; 27] = [
     PLACES,
     RADIAL,
     FOLDED,
+    PICTURE,
 ];
 
 /// One ghost as the spectrum's shader reads it.

@@ -2,7 +2,7 @@
 //!
 //! | file | what it does |
 //! | --- | --- |
-//! | `context` | a device: EGL without a window, or OSMesa |
+//! | `context` | a device: in a window, EGL without one, or OSMesa |
 //! | `layout` | what Rust and GLSL must agree on |
 //! | `resource`, `shader` | GL objects that free themselves; shaders put together from `shaders/` |
 //! | `pixels` | pixel buffers: pictures on their way in and out while the device works |
@@ -14,6 +14,7 @@
 //! | `coefficients` | samples of any function → its coefficients |
 //! | `lines` | curves as line strips |
 //! | `copy` | the yardstick of the bench |
+//! | `screen`, `view`, `paint` | where the viewer draws; the picture as a display shows it; egui's shapes |
 //! | `precision` | how exact the driver's sin, cos and exp are, and vglare's phases |
 
 pub(crate) mod coefficients;
@@ -26,16 +27,21 @@ pub(crate) mod graf;
 mod harmonics;
 pub(crate) mod layout;
 pub(crate) mod lines;
+pub(crate) mod paint;
 pub(crate) mod pixels;
 pub mod precision;
 pub(crate) mod range;
 pub(crate) mod resource;
 pub(crate) mod runner;
+mod screen;
 mod shader;
 pub(crate) mod spectrum;
 mod timer;
+pub(crate) mod view;
 
+pub use context::window::{Display, Surface, event_loop};
 pub use context::{Backend, Device, Info, Limits};
+pub use screen::{Region, Screen};
 pub use timer::PassTime;
 
 #[cfg(test)]

@@ -295,6 +295,20 @@ impl Texture {
         }
     }
 
+    /// One texel of level 0, after waiting for the device; it must be there.
+    pub fn read_texel(&self, [x, y]: [u32; 2]) -> [f32; 4] {
+        assert!(self.texel == Texel::Rgba && x < self.width && y < self.height);
+        let mut texel = [[0.0f32; 4]];
+        let gl = self.device.gl();
+        unsafe {
+            gl.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
+            gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffers[0]));
+            let into = PixelPackData::Slice(Some(bytemuck::cast_slice_mut(&mut texel)));
+            gl.read_pixels(x as i32, y as i32, 1, 1, glow::RGBA, glow::FLOAT, into);
+        }
+        texel[0]
+    }
+
     /// Reads the top left of level 0 into a buffer, some time from now.
     ///
     /// # Errors

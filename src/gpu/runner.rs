@@ -8,6 +8,7 @@ use glow::HasContext as _;
 
 use super::context::Device;
 use super::resource::{Texture, Triangle};
+use super::screen::{Region, Screen};
 use super::shader::{Define, Program};
 use super::timer::{PassTime, Timer};
 use crate::Result;
@@ -50,6 +51,17 @@ impl Runner {
         let program = self.program(path, defines, Program::fragment)?;
         self.run(label(path), || {
             target.target(level);
+            program.bind();
+            self.triangle.draw();
+        });
+        Ok(())
+    }
+
+    /// Draws a region of the screen with a fragment shader of `shaders/`.
+    pub fn draw_screen(&self, path: &str, defines: &[Define<'_>], screen: &Screen, region: Region) -> Result<()> {
+        let program = self.program(path, defines, Program::fragment)?;
+        self.run(label(path), || {
+            screen.target(region);
             program.bind();
             self.triangle.draw();
         });

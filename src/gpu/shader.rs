@@ -59,9 +59,11 @@ const SOURCES: &[(&str, &str)] = &sources![
     "shared/phase.glsl",
     "shared/shapes.glsl",
     "shared/spectrum.glsl",
+    "shared/tone.glsl",
     "spectrum.comp",
     "spectrum_sum.comp",
     "strips.frag",
+    "view.frag",
 ];
 
 /// A definition that a shader is specialised with.

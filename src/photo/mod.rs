@@ -168,7 +168,7 @@ impl Photo {
     }
 
     /// From the photo's primaries to Rec.709, white to white; none where they are the same.
-    fn to_rec709(&self) -> Option<DMat3> {
+    pub(crate) fn to_rec709(&self) -> Option<DMat3> {
         self.source.primaries.map(|primaries| primaries.to_rec709())
     }
 

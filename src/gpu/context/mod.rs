@@ -1,10 +1,12 @@
-//! OpenGL 4.3 without a window: EGL where there is a driver, OSMesa where there is none.
+//! OpenGL 4.3 with and without a window: GLX or EGL on a display, EGL where there is a driver, OSMesa where there is none.
 
 mod egl;
 mod osmesa;
+pub(in crate::gpu) mod window;
 
 use std::fmt;
 use std::rc::Rc;
+use std::sync::Arc;
 
 use glow::HasContext as _;
 
@@ -22,10 +24,13 @@ pub enum Backend {
     /// OSMesa, Mesa's software renderer in memory: needs neither driver nor display.
     #[value(name = "osmesa")]
     OsMesa,
+    /// GLX or EGL on a display, drawing into a window; only [`Display`](window::Display) opens it.
+    #[value(skip)]
+    Window,
 }
 
 impl Backend {
-    /// Every backend, in the order in which [`Device::open`] tries them.
+    /// Every backend that needs no window, in the order in which [`Device::open`] tries them.
     pub const ALL: [Self; 2] = [Self::Egl, Self::OsMesa];
 
     /// The Debian packages that bring this backend.
@@ -33,6 +38,7 @@ impl Backend {
         match self {
             Self::Egl => "libegl1 libgl1-mesa-dri",
             Self::OsMesa => "libosmesa6",
+            Self::Window => "libgl1 libegl1 libgl1-mesa-dri libx11-6 libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0",
         }
     }
 }
@@ -42,6 +48,7 @@ impl fmt::Display for Backend {
         f.write_str(match self {
             Self::Egl => "egl",
             Self::OsMesa => "osmesa",
+            Self::Window => "window",
         })
     }
 }
@@ -54,7 +61,8 @@ trait Platform {
 
 /// A current GL context on this thread. GL objects hold it by [`Rc`], so it outlives them all.
 pub struct Device {
-    gl: glow::Context,
+    /// By [`Arc`] because egui's painter shares it.
+    gl: Arc<glow::Context>,
     info: Info,
     platform: Box<dyn Platform>,
 }
@@ -133,18 +141,31 @@ impl Device {
         let (gl, platform): (glow::Context, Box<dyn Platform>) = match backend {
             Backend::Egl => egl::open()?,
             Backend::OsMesa => osmesa::open()?,
+            Backend::Window => return Err("is not opened without a window".into()),
         };
+        Self::new(gl, backend, platform)
+    }
+
+    /// The device of a context that is current.
+    fn new(gl: glow::Context, backend: Backend, platform: Box<dyn Platform>) -> Result<Self, String> {
         let version = gl.version();
         if (version.major, version.minor) < (u32::from(REQUIRED.0), u32::from(REQUIRED.1)) {
             return Err(format!("gives OpenGL {}.{} and 4.3 is needed", version.major, version.minor));
         }
         let info = describe(&gl, backend, platform.route());
-        Ok(Self { gl, info, platform })
+        // egui's painter asks for an `Arc`; nothing leaves this thread.
+        #[allow(clippy::arc_with_non_send_sync)]
+        Ok(Self { gl: Arc::new(gl), info, platform })
     }
 
     /// The GL functions.
     pub(in crate::gpu) fn gl(&self) -> &glow::Context {
         &self.gl
+    }
+
+    /// The GL functions, for a painter that keeps them.
+    pub(in crate::gpu) fn shared_gl(&self) -> Arc<glow::Context> {
+        self.gl.clone()
     }
 
     /// What the driver says about itself.

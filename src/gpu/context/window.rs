@@ -1,0 +1,180 @@
+//! OpenGL in a window, by GLX or EGL.
+
+use std::num::NonZeroU32;
+use std::rc::Rc;
+
+use glutin::config::{Api, Config, ConfigTemplateBuilder, GlConfig as _};
+use glutin::context::{
+    ContextApi, ContextAttributesBuilder, GlProfile, NotCurrentContext, PossiblyCurrentContext, Version,
+};
+use glutin::display::{Display as GlDisplay, DisplayApiPreference, GetGlDisplay as _, GlDisplay as _};
+use glutin::prelude::NotCurrentGlContext as _;
+use glutin::surface::{GlSurface as _, SurfaceAttributesBuilder, SwapInterval, WindowSurface};
+use libloading::Library;
+use winit::event_loop::{ActiveEventLoop, EventLoop};
+use winit::platform::x11::register_xlib_error_hook;
+use winit::raw_window_handle::{HasDisplayHandle as _, HasWindowHandle as _};
+use winit::window::{Window, WindowAttributes};
+
+use super::{Backend, Device, Platform, REQUIRED};
+use crate::{Error, Result};
+
+/// What winit loads at run time on X11 and would panic without.
+const X11_LIBRARIES: [&str; 2] = ["libxkbcommon.so.0", "libxkbcommon-x11.so.0"];
+
+/// An event loop on the display that the environment names.
+///
+/// # Errors
+/// [`Error::NoDisplay`] where it names none, it does not answer, or a library is missing.
+pub fn event_loop<T>() -> Result<EventLoop<T>> {
+    let variable = |name: &str| std::env::var(name).ok().filter(|value| !value.is_empty());
+    let wayland = variable("WAYLAND_DISPLAY").or(variable("WAYLAND_SOCKET"));
+    let Some(display) = wayland.clone().or(variable("DISPLAY")) else {
+        let reason = "neither WAYLAND_DISPLAY nor DISPLAY names a display".into();
+        return Err(Error::NoDisplay { reason });
+    };
+    if wayland.is_none() {
+        for name in X11_LIBRARIES {
+            if unsafe { Library::new(name) }.is_err() {
+                let packages = Backend::Window.packages();
+                let reason = format!("{name} was not found (on Debian: apt-get install {packages})");
+                return Err(Error::NoDisplay { reason });
+            }
+        }
+    }
+    EventLoop::with_user_event()
+        .build()
+        .map_err(|error| Error::NoDisplay { reason: format!("the display {display} does not answer: {error}") })
+}
+
+/// A way to OpenGL 4.3 on a display, before there is any window.
+pub struct Display {
+    config: Config,
+    context: NotCurrentContext,
+    route: &'static str,
+}
+
+impl Display {
+    /// The first of GLX and EGL that gives OpenGL 4.3 or later.
+    ///
+    /// # Errors
+    /// [`Error::NoContext`] with the reason for each.
+    pub fn open<T>(event_loop: &EventLoop<T>) -> Result<Self> {
+        // GLX first: on X11 drivers resize its windows more smoothly. Wayland has EGL only.
+        let handle =
+            event_loop.display_handle().map_err(|error| Error::NoDisplay { reason: error.to_string() })?.as_raw();
+        let glx = DisplayApiPreference::Glx(Box::new(register_xlib_error_hook));
+        let mut reasons = Vec::new();
+        for (name, api) in [("GLX", glx), ("EGL", DisplayApiPreference::Egl)] {
+            let opened = unsafe { GlDisplay::new(handle, api) }.map_err(|error| error.to_string());
+            match opened.and_then(|display| Self::try_open(&display)) {
+                Ok(display) => return Ok(display),
+                Err(reason) => reasons.push(format!("{name}: {reason}")),
+            }
+        }
+        reasons.push(format!("on Debian: apt-get install {}", Backend::Window.packages()));
+        Err(Error::NoContext { reasons })
+    }
+
+    fn try_open(display: &GlDisplay) -> Result<Self, String> {
+        let template = ConfigTemplateBuilder::new()
+            .with_api(Api::OPENGL)
+            .with_depth_size(0)
+            .with_stencil_size(0)
+            .with_transparency(false)
+            .build();
+        // vglare draws without depth, stencil or samples.
+        let config = unsafe { display.find_configs(template) }
+            .map_err(|error| error.to_string())?
+            .min_by_key(|config| (config.num_samples(), !config.hardware_accelerated()))
+            .ok_or("no configuration for OpenGL in a window")?;
+        let route = match display {
+            GlDisplay::Egl(_) => "EGL window",
+            GlDisplay::Glx(_) => "GLX window",
+        };
+        let attributes = ContextAttributesBuilder::new()
+            .with_context_api(ContextApi::OpenGl(Some(Version::new(REQUIRED.0, REQUIRED.1))))
+            .with_profile(GlProfile::Core)
+            .build(None);
+        let context = unsafe { display.create_context(&config, &attributes) }
+            .map_err(|error| format!("no core context of OpenGL 4.3: {error}"))?;
+        Ok(Self { config, context, route })
+    }
+
+    /// Opens a window and makes its context current on this thread.
+    ///
+    /// # Errors
+    /// [`Error::NoDisplay`] where the window is refused, [`Error::NoContext`] where its context is.
+    pub fn window(self, event_loop: &ActiveEventLoop, attributes: WindowAttributes) -> Result<(Rc<Device>, Surface)> {
+        let window = glutin_winit::finalize_window(event_loop, attributes, &self.config)
+            .map_err(|error| Error::NoDisplay { reason: error.to_string() })?;
+        let handle = window.window_handle().map_err(|error| Error::NoDisplay { reason: error.to_string() })?.as_raw();
+        let route = self.route;
+        let refused = |reason: String| Error::NoContext { reasons: vec![format!("{route}: {reason}")] };
+        let display = self.config.display();
+        let (width, height) = sides(window.inner_size().into());
+        let attributes = SurfaceAttributesBuilder::<WindowSurface>::new().build(handle, width, height);
+        let surface = unsafe { display.create_window_surface(&self.config, &attributes) }
+            .map_err(|error| refused(error.to_string()))?;
+        let context = self.context.make_current(&surface).map_err(|error| refused(error.to_string()))?;
+        let gl = unsafe { glow::Context::from_loader_function_cstr(|name| display.get_proc_address(name)) };
+        let context = Rc::new(context);
+        let platform = OnScreen { _context: context.clone(), route };
+        let device = Device::new(gl, Backend::Window, Box::new(platform)).map_err(refused)?;
+        Ok((Rc::new(device), Surface { surface, context, window }))
+    }
+}
+
+struct OnScreen {
+    _context: Rc<PossiblyCurrentContext>,
+    route: &'static str,
+}
+
+impl Platform for OnScreen {
+    fn route(&self) -> String {
+        self.route.into()
+    }
+}
+
+/// A window and what is drawn into it.
+pub struct Surface {
+    // The window goes last: fields drop in order of declaration.
+    surface: glutin::surface::Surface<WindowSurface>,
+    context: Rc<PossiblyCurrentContext>,
+    window: Window,
+}
+
+impl Surface {
+    /// The window.
+    pub fn window(&self) -> &Window {
+        &self.window
+    }
+
+    /// Shows what was drawn.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the context is lost.
+    pub fn swap(&self) -> Result<()> {
+        self.window.pre_present_notify();
+        self.surface.swap_buffers(&self.context).map_err(|error| Error::Gl(format!("the window is lost: {error}")))
+    }
+
+    /// Fits the surface to the window's size, in pixels; one without pixels is left as it was.
+    pub fn resize(&self, size: [u32; 2]) {
+        if size.iter().all(|&side| side > 0) {
+            let (width, height) = sides(size.into());
+            self.surface.resize(&self.context, width, height);
+        }
+    }
+
+    /// Whether frames wait for the display; says whether the driver obeys.
+    pub fn set_vsync(&self, vsync: bool) -> bool {
+        let interval = if vsync { SwapInterval::Wait(NonZeroU32::MIN) } else { SwapInterval::DontWait };
+        self.surface.set_swap_interval(&self.context, interval).is_ok()
+    }
+}
+
+fn sides((width, height): (u32, u32)) -> (NonZeroU32, NonZeroU32) {
+    let side = |side| NonZeroU32::new(side).unwrap_or(NonZeroU32::MIN);
+    (side(width), side(height))
+}

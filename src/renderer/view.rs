@@ -1,0 +1,87 @@
+//! The picture on the device, looked at without bringing it back.
+
+use glam::{DMat3, DVec2};
+
+use super::{Renderer, Settings, convert};
+use crate::Result;
+use crate::frame::Frame;
+use crate::gpu::view::View as Uniforms;
+use crate::gpu::{Region, Screen};
+use crate::photo::ToneMap;
+
+/// How a picture is looked at; the picture itself does not depend on it.
+///
+/// Magnified, a pixel of the photo is a square of the screen. Made smaller, a pixel of the screen shows the mean light
+/// of all that fall on it, weighted by area; of more than 12 a side, rows and columns are left out evenly.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    /// Where the region's top left corner lies on the photo, in its pixels from its top left corner.
+    pub origin: DVec2,
+    /// The photo's pixels from one of the screen to the next; less than 1 magnifies.
+    pub pitch: f64,
+    /// Stops by which the light is raised first.
+    pub exposure: f64,
+    /// How light comes into the display's range next.
+    pub tone_map: ToneMap,
+    /// From the photo's primaries to Rec.709's.
+    pub gamut: DMat3,
+    /// Columns of the region from this one on show what was drawn, those before it the photo as it was.
+    pub wipe: f64,
+    /// What surrounds the photo, RGB as it is shown, 0 to 1.
+    pub surround: [f32; 3],
+}
+
+impl Renderer {
+    /// Draws the glare alone and leaves it on the device in the picture's place. Does not wait for it.
+    ///
+    /// # Errors
+    /// [`crate::Error::Gl`] where the driver refuses, or where there is no scene.
+    pub fn draw_glare(&mut self, frame: Frame, settings: &Settings) -> Result<()> {
+        let uniforms = self.start(frame, settings)?;
+        let source = self.evaluate(frame, frame.window)?;
+        let size = [frame.window.width, frame.window.height];
+        self.composite.draw_glare(&self.runner, convert::variant(source, settings), &uniforms, size)?;
+        Ok(())
+    }
+
+    /// Shows what was drawn last in a region of the screen; the photo alone where nothing was drawn.
+    ///
+    /// # Errors
+    /// [`crate::Error::Gl`] where no photo is loaded, or the driver refuses.
+    pub fn view(&mut self, view: &View, screen: &Screen, region: Region) -> Result<()> {
+        let photo = self.composite.loaded()?;
+        let picture = self.composite.drawn().unwrap_or(photo);
+        let tone_map = match view.tone_map {
+            ToneMap::None => "0",
+            ToneMap::Reinhard => "1",
+            ToneMap::Aces => "2",
+            ToneMap::Agx => "3",
+        };
+        // The shader counts from the screen's corner.
+        let corner = DVec2::new(f64::from(region.x), f64::from(region.y));
+        let uniforms = Uniforms {
+            gamut: view.gamut.to_cols_array_2d().map(|[r, g, b]| [r as f32, g as f32, b as f32, 0.0]),
+            origin: (view.origin - view.pitch * corner).as_vec2().to_array(),
+            pitch: view.pitch as f32,
+            rows: 0.0,
+            surround: view.surround,
+            gain: view.exposure.exp2() as f32,
+            wipe: (view.wipe + corner.x) as f32,
+            pad: [0.0; 3],
+        };
+        self.view.draw(&self.runner, [photo, picture], tone_map, &uniforms, screen, region)
+    }
+
+    /// A pixel of the photo and of what was drawn last, linear; none where it is not on the device.
+    pub fn pixel(&self, column: u32, row: u32) -> Option<[[f32; 4]; 2]> {
+        let (photo, picture) = (self.composite.loaded().ok()?, self.composite.drawn().ok()?);
+        let there = |width: u32, height: u32| column < width && row < height;
+        let both = [photo, picture].iter().all(|texture| there(texture.level_width(0), texture.level_height(0)));
+        both.then(|| [photo, picture].map(|texture| texture.read_texel([column, row])))
+    }
+
+    /// Forgets the photo and the picture on the device.
+    pub fn unload(&mut self) {
+        self.composite.unload();
+    }
+}

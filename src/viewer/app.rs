@@ -1,0 +1,302 @@
+//! The whole window but the window: what is open, and one frame of it on a screen.
+
+use std::path::PathBuf;
+use std::rc::Rc;
+use std::time::Duration;
+
+use egui::{Align, CentralPanel, Color32, Layout, Panel, RawInput, RichText, Ui};
+
+use super::canvas::{self, Canvas, Probe};
+use super::document::Document;
+use super::loader::{Loader, Wake};
+use super::shortcuts::{self, Command};
+use super::stage::{Counts, Stage};
+use super::{panels, viewing};
+use crate::Result;
+use crate::gpu::paint::Painter;
+use crate::gpu::{Device, Screen};
+use crate::scene::Lens;
+
+/// Milliseconds of plan, spectrum and composite from which on a drag is shown by previews.
+const SLOW: f64 = 33.0;
+/// For how long nothing must change before a preview is replaced while the pointer still holds on, in seconds.
+const SETTLED: f64 = 0.3;
+
+/// What is open, and what draws it.
+pub struct App {
+    context: egui::Context,
+    painter: Painter,
+    stage: Stage,
+    loader: Loader,
+    lens: Lens,
+    documents: Vec<(u64, Document)>,
+    current: usize,
+    next: u64,
+    notices: Vec<String>,
+    canvas: Canvas,
+    probe: Option<Probe>,
+    /// When the field's look last changed, and what a full picture of it last cost, in milliseconds.
+    moved: f64,
+    cost: f64,
+}
+
+/// What came of a frame.
+pub struct Shown {
+    /// When the next frame is due, unless something happens before.
+    pub repaint_after: Duration,
+    /// What egui asks of the window: cursor, clipboard, …
+    pub platform: egui::PlatformOutput,
+}
+
+impl App {
+    /// An app with nothing open, on a device that is current. Photos open with `lens`; `wake` is called from other
+    /// threads when a frame is wanted.
+    ///
+    /// # Errors
+    /// [`crate::Error::Gl`] where the driver refuses.
+    pub fn new(device: &Rc<Device>, lens: Lens, wake: Wake) -> Result<Self> {
+        let context = egui::Context::default();
+        let by_egui = wake.clone();
+        context.set_request_repaint_callback(move |asked| {
+            // What is due later is told by the frame itself.
+            if asked.delay.is_zero() {
+                by_egui();
+            }
+        });
+        Ok(Self {
+            context,
+            painter: Painter::new(device)?,
+            stage: Stage::new(device)?,
+            loader: Loader::new(wake),
+            lens,
+            documents: Vec::new(),
+            current: 0,
+            next: 0,
+            notices: Vec::new(),
+            canvas: Canvas::default(),
+            probe: None,
+            moved: f64::NEG_INFINITY,
+            cost: 0.0,
+        })
+    }
+
+    /// Begins to open a photo; it is shown when it has been read.
+    pub fn open(&mut self, path: PathBuf) {
+        self.loader.read(path, self.lens.clone());
+    }
+
+    /// Whether files are being read.
+    pub fn is_reading(&self) -> bool {
+        self.loader.under_way().next().is_some()
+    }
+
+    /// Shows a document, behind the others.
+    pub fn add(&mut self, document: Document) {
+        self.current = self.documents.len();
+        self.documents.push((self.next, document));
+        self.next += 1;
+    }
+
+    /// The document that is shown.
+    pub fn document(&self) -> Option<&Document> {
+        self.documents.get(self.current).map(|(_, document)| document)
+    }
+
+    /// The document that is shown, to be changed.
+    pub fn document_mut(&mut self) -> Option<&mut Document> {
+        self.documents.get_mut(self.current).map(|(_, document)| document)
+    }
+
+    /// What went wrong and was not dismissed yet.
+    pub fn notices(&self) -> &[String] {
+        &self.notices
+    }
+
+    /// Where the picture lay on the screen in the last frame.
+    pub fn placement(&self) -> Option<&viewing::Placement> {
+        self.canvas.placement.as_ref()
+    }
+
+    /// How often each kind of work was done.
+    pub fn counts(&self) -> Counts {
+        self.stage.counts()
+    }
+
+    /// egui's side of it.
+    pub fn context(&self) -> &egui::Context {
+        &self.context
+    }
+
+    /// The largest side of a texture, for egui's fonts.
+    pub fn max_texture_side(&self) -> usize {
+        self.painter.max_texture_side()
+    }
+
+    /// What the window is called.
+    pub fn title(&self) -> String {
+        self.document().map_or("vglare".into(), |document| format!("{} – vglare", document.name()))
+    }
+
+    /// Runs one frame: takes the input, brings the picture up to date, and draws all of the screen.
+    ///
+    /// # Errors
+    /// [`crate::Error::Gl`] where the driver fails at the screen itself. What fails at a picture becomes a notice.
+    pub fn frame(&mut self, input: RawInput, screen: &Screen) -> Result<Shown> {
+        self.take_in();
+        let context = self.context.clone();
+        let before = self.document().map(|document| document.look.optics());
+        let mut output = context.run_ui(input, |ui| self.ui(ui, screen));
+        if before != self.document().map(|document| document.look.optics()) {
+            self.moved = context.time();
+        }
+        screen.clear(opaque(context.global_style().visuals.extreme_bg_color));
+        let again = self.draw(screen).unwrap_or_else(|error| {
+            self.notice(error.to_string());
+            Duration::ZERO
+        });
+        let shapes = context.tessellate(output.shapes, output.pixels_per_point);
+        self.painter.paint(screen, output.pixels_per_point, &shapes, &mut output.textures_delta);
+        let by_egui = output.viewport_output.values().map(|viewport| viewport.repaint_delay).min();
+        Ok(Shown { repaint_after: by_egui.unwrap_or(Duration::MAX).min(again), platform: output.platform_output })
+    }
+
+    /// Takes what was read in the background.
+    fn take_in(&mut self) {
+        for result in self.loader.take() {
+            match result {
+                Ok(document) => self.add(document),
+                Err(error) => self.notice(error.to_string()),
+            }
+        }
+    }
+
+    fn notice(&mut self, text: String) {
+        if !self.notices.contains(&text) {
+            self.notices.push(text);
+        }
+    }
+
+    /// Brings the picture up to date and draws it; says when it is to be drawn again by itself.
+    fn draw(&mut self, screen: &Screen) -> Result<Duration> {
+        let Some(placement) = self.canvas.placement else { return Ok(Duration::MAX) };
+        let Some((number, document)) = self.documents.get(self.current) else { return Ok(Duration::MAX) };
+        let still = self.context.time() - self.moved;
+        let preview = self.cost > SLOW && still < SETTLED && self.context.egui_is_using_pointer();
+        let done = self.stage.counts();
+        self.stage.update(*number, document, preview)?;
+        if !preview && self.stage.counts().spectra > done.spectra {
+            let times = self.stage.times();
+            self.cost = times.plan + times.spectrum + times.composite;
+        }
+        let surround = opaque(self.context.global_style().visuals.extreme_bg_color);
+        self.stage.show(document, &placement, surround, screen)?;
+        let mut again = if preview { Duration::from_secs_f64(SETTLED - still) } else { Duration::MAX };
+        if let Some(loupe) = self.canvas.loupe {
+            self.stage.magnify(document, loupe.center, loupe.side, loupe.before, screen, loupe.region)?;
+            let [column, row] = loupe.pixel;
+            let probe = self.stage.pixel(column, row);
+            let probe = probe.map(|[photo, picture]| Probe { pixel: loupe.pixel, photo, picture });
+            if probe != self.probe {
+                // The numbers are known once the picture is; the next frame shows them.
+                self.probe = probe;
+                again = Duration::ZERO;
+            }
+        }
+        Ok(again)
+    }
+
+    fn ui(&mut self, ui: &mut Ui, screen: &Screen) {
+        let dropped = ui.input(|input| input.raw.dropped_files.clone());
+        dropped.iter().for_each(|file| self.open(file.path().to_owned()));
+        self.tabs(ui);
+        self.strips(ui);
+        let Some((_, document)) = self.documents.get_mut(self.current) else {
+            self.canvas = Canvas::default();
+            CentralPanel::default().show(ui, |ui| {
+                ui.with_layout(Layout::centered_and_justified(egui::Direction::TopDown), |ui| {
+                    ui.label("Drop photos here");
+                });
+            });
+            return;
+        };
+        let command = shortcuts::apply(ui.ctx(), document, self.canvas.placement.as_ref());
+        Panel::right("panels").default_size(300.0).show(ui, |ui| panels::show(ui, document, &self.stage));
+        let canvas =
+            CentralPanel::no_frame().show(ui, |ui| canvas::show(ui, document, screen.size(), self.probe.as_ref()));
+        self.canvas = canvas.inner;
+        match command {
+            Some(Command::Next) => self.current = (self.current + 1) % self.documents.len(),
+            Some(Command::Close) => self.close(self.current),
+            None => {}
+        }
+    }
+
+    /// One tab for each document, where there are several.
+    fn tabs(&mut self, ui: &mut Ui) {
+        if self.documents.len() < 2 {
+            return;
+        }
+        let mut closed = None;
+        Panel::top("tabs").show(ui, |ui| {
+            ui.horizontal_wrapped(|ui| {
+                for (index, (_, document)) in self.documents.iter().enumerate() {
+                    let tab = ui.selectable_label(index == self.current, document.name());
+                    if tab.on_hover_text(document.path.display().to_string()).clicked() {
+                        self.current = index;
+                    }
+                    if ui.small_button("✕").on_hover_text("Close it (Ctrl+W)").clicked() {
+                        closed = Some(index);
+                    }
+                }
+            });
+        });
+        if let Some(index) = closed {
+            self.close(index);
+        }
+    }
+
+    /// What is being read, and what went wrong.
+    fn strips(&mut self, ui: &mut Ui) {
+        let reading: Vec<_> = self.loader.under_way().map(|path| path.display().to_string()).collect();
+        if !reading.is_empty() {
+            Panel::bottom("reading").show(ui, |ui| {
+                ui.horizontal(|ui| {
+                    ui.label(format!("Reading {}", reading.join(", ")));
+                    if ui.button("Cancel").clicked() {
+                        self.loader.cancel();
+                    }
+                });
+            });
+        }
+        let mut dismissed = None;
+        for (index, text) in self.notices.iter().enumerate() {
+            Panel::bottom(("notice", index)).show(ui, |ui| {
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    if ui.button("✕").on_hover_text("Dismiss").clicked() {
+                        dismissed = Some(index);
+                    }
+                    ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                        ui.label(RichText::new(text).color(ui.visuals().error_fg_color));
+                    });
+                });
+            });
+        }
+        if let Some(index) = dismissed {
+            self.notices.remove(index);
+        }
+    }
+
+    fn close(&mut self, index: usize) {
+        self.documents.remove(index);
+        if self.current > index || self.current >= self.documents.len() {
+            self.current = self.current.saturating_sub(1);
+        }
+        if self.documents.is_empty() {
+            self.stage.clear();
+        }
+    }
+}
+
+fn opaque(colour: Color32) -> [f32; 3] {
+    [colour.r(), colour.g(), colour.b()].map(|code| f32::from(code) / 255.0)
+}

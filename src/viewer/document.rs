@@ -1,0 +1,173 @@
+//! A photo that is open: the pixels that are shown, its look, and how it is looked at.
+
+use std::path::{Path, PathBuf};
+
+use glam::{DMat3, DVec2};
+
+use super::look::Look;
+use super::viewing::Viewing;
+use crate::Result;
+use crate::frame::{Frame, Window};
+use crate::photo::{self, Photo};
+use crate::renderer::Settings;
+use crate::scene::{self, FindOptions, Lens};
+
+/// The most pixels that are computed live: one tile of the renderer's, 4 Mpx.
+///
+/// A larger photo is shown as means of squares of its pixels. Nothing else changes by that: lights, ghosts and tolerance
+/// are in units of the picture's height, and the lights are those of the whole photo.
+pub const LIVE_PIXELS: usize = 4 << 20;
+
+/// One open photo.
+pub struct Document {
+    /// Its file.
+    pub path: PathBuf,
+    /// Columns and rows in the file.
+    pub size: [u32; 2],
+    /// The frame of the pixels that are shown.
+    pub frame: Frame,
+    /// The pixels that are shown, linear RGBA, row by row from the top.
+    pub pixels: Vec<[f32; 4]>,
+    /// The side of the square of the file's pixels whose mean is one of `pixels`.
+    pub shrunk: u32,
+    /// From its primaries to Rec.709's.
+    pub gamut: DMat3,
+    /// What is set.
+    pub look: Look,
+    /// What was set when it was opened.
+    pub opened: Look,
+    /// How it is looked at.
+    pub viewing: Viewing,
+    /// The lamp that is selected.
+    pub selected: Option<usize>,
+}
+
+impl Document {
+    /// Reads a photo and finds its lights.
+    ///
+    /// # Errors
+    /// Those of [`photo::read`].
+    pub fn read(path: &Path, lens: Lens) -> Result<Self> {
+        Ok(Self::new(path, photo::read(path)?, lens))
+    }
+
+    /// An open photo.
+    pub fn new(path: &Path, photo: Photo, lens: Lens) -> Self {
+        let weights = photo.luminance_weights();
+        let found = scene::find(&photo.pixels, &photo.frame, weights, &FindOptions::default());
+        let look = Look::new(&found.lights, lens, Settings { luminance: weights, ..Settings::default() });
+        let gamut = photo.to_rec709().unwrap_or(DMat3::IDENTITY);
+        let size = [photo.width(), photo.height()];
+        let shrunk = side(photo.frame.window, LIVE_PIXELS);
+        let (frame, pixels) = shrink(photo, shrunk);
+        let (viewing, selected) = (Viewing::default(), None);
+        Self {
+            path: path.to_owned(),
+            size,
+            frame,
+            pixels,
+            shrunk,
+            gamut,
+            opened: look.clone(),
+            look,
+            viewing,
+            selected,
+        }
+    }
+
+    /// The file's name, without its folder.
+    pub fn name(&self) -> String {
+        self.path.file_name().unwrap_or(self.path.as_os_str()).to_string_lossy().into_owned()
+    }
+
+    /// Where a point of the picture plane lies among the shown pixels, counted from their top left corner.
+    pub fn place(&self, position: DVec2) -> DVec2 {
+        let window = self.frame.window;
+        self.frame.pixel(position) + 0.5 - DVec2::new(f64::from(window.x), f64::from(window.y))
+    }
+
+    /// The inverse of [`Document::place`].
+    pub fn position(&self, place: DVec2) -> DVec2 {
+        let window = self.frame.window;
+        let pixel = place - 0.5 + DVec2::new(f64::from(window.x), f64::from(window.y));
+        self.frame.position(pixel.x, pixel.y)
+    }
+}
+
+/// The smallest side of squares by which a window comes to at most `most` pixels.
+fn side(window: Window, most: usize) -> u32 {
+    (1..).find(|&side| shrunk(window, side).pixels() <= most).unwrap_or(1)
+}
+
+fn shrunk(window: Window, side: u32) -> Window {
+    let i_side = side as i32;
+    Window {
+        x: window.x.div_euclid(i_side),
+        y: window.y.div_euclid(i_side),
+        width: (window.width / side).max(1),
+        height: (window.height / side).max(1),
+    }
+}
+
+/// The means of squares of pixels; what does not fill a square at the right and at the bottom is left out.
+fn shrink(photo: Photo, side: u32) -> (Frame, Vec<[f32; 4]>) {
+    let from = photo.frame.window;
+    if side == 1 {
+        return (photo.frame, photo.pixels);
+    }
+    let to = shrunk(from, side);
+    let frame = Frame { width: (photo.width() / side).max(1), height: (photo.height() / side).max(1), window: to };
+    let stride = from.width as usize;
+    let (wide, tall) = (side.min(from.width) as usize, side.min(from.height) as usize);
+    let weight = 1.0 / (wide * tall) as f32;
+    let mean = |row: usize, column: usize| {
+        let mut sum = [0.0f32; 4];
+        for line in 0..tall {
+            let at = (row * side as usize + line) * stride + column * side as usize;
+            for pixel in &photo.pixels[at..at + wide] {
+                for (sum, value) in sum.iter_mut().zip(pixel) {
+                    *sum += value * weight;
+                }
+            }
+        }
+        sum
+    };
+    let (width, height) = (to.width as usize, to.height as usize);
+    let pixels = (0..height).flat_map(|row| (0..width).map(move |column| (row, column)));
+    (frame, pixels.map(|(row, column)| mean(row, column)).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::presets;
+
+    fn lens() -> Lens {
+        presets::named(presets::DEFAULT_PRESET).unwrap()
+    }
+
+    #[test]
+    fn a_large_photo_is_shown_by_means_of_squares() {
+        let pixels = (0..12 * 6).map(|i| [(i % 12) as f32, (i / 12) as f32, 1.0, 1.0]).collect();
+        let photo = Photo::new(12, 6, pixels);
+        assert_eq!((side(photo.frame.window, 72), side(photo.frame.window, 71)), (1, 2));
+        let (frame, pixels) = shrink(photo, 3);
+        assert_eq!((frame, pixels.len()), (Frame::full(4, 2), 8));
+        assert!(pixels[1].iter().zip([4.0, 1.0, 1.0, 1.0]).all(|(got, want)| (got - want).abs() < 1e-5), "{pixels:?}");
+    }
+
+    #[test]
+    fn a_strip_is_shrunk_without_vanishing() {
+        let (frame, pixels) = shrink(Photo::new(9, 1, vec![[2.0; 4]; 9]), 4);
+        assert_eq!((frame.window.width, frame.window.height, pixels.len()), (2, 1, 2));
+        assert!(pixels.iter().flatten().all(|value| (value - 2.0).abs() < 1e-6));
+    }
+
+    #[test]
+    fn place_and_position_undo_each_other() {
+        let document = Document::new(Path::new("a.exr"), Photo::new(8, 4, vec![[0.5; 4]; 32]), lens());
+        assert_eq!(document.place(DVec2::ZERO), DVec2::new(4.0, 2.0));
+        let at = DVec2::new(-1.25, 7.5);
+        assert!((document.place(document.position(at)) - at).length() < 1e-12);
+    }
+}

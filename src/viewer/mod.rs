@@ -1,0 +1,38 @@
+//! The window: a photo with its glare, live.
+//!
+//! | file | what it does |
+//! | --- | --- |
+//! | `window` | winit's events, the surface, when to draw; nothing else knows of a window |
+//! | `app` | [`App`]: what is open, and one frame of it, with or without a window |
+//! | `document` | an open photo: its pixels, its look, how it is looked at |
+//! | `look` | what a person sets of the glare |
+//! | `viewing` | what a person sets of the view, and where pixels lie on the screen for it |
+//! | `stage` | the picture on the device; computes what has changed, and nothing else |
+//! | `loader` | files, read in the background |
+//! | `canvas` | the picture under the pointer: moving, magnifying, the lights' handles, the loupe |
+//! | `panels` | the controls, one file a panel |
+//! | `control` | what every control has: a name, a unit, a range, a way back |
+//! | `shortcuts` | the keyboard |
+//!
+//! A frame runs egui, which changes the document; then the stage is brought up to date with the document, shown on the
+//! screen, and egui's shapes are painted over it.
+
+mod app;
+mod canvas;
+mod control;
+mod document;
+mod loader;
+mod look;
+mod panels;
+mod shortcuts;
+mod stage;
+mod viewing;
+mod window;
+
+pub use app::{App, Shown};
+pub use document::{Document, LIVE_PIXELS};
+pub use loader::Wake;
+pub use look::{Lamp, Look};
+pub use stage::{Counts, Times};
+pub use viewing::{Placement, Shows, Viewing, Zoom};
+pub use window::run;

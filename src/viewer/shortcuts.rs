@@ -1,0 +1,125 @@
+//! The keyboard.
+
+use egui::{Context, Key, Modifiers};
+use glam::DVec2;
+
+use super::document::Document;
+use super::viewing::{MOST_EXPOSURE, Placement, Shows, Zoom};
+use crate::photo::ToneMap;
+
+/// Keys and what they do, for the list that a person can read.
+pub const KEYS: [(&str, &str); 12] = [
+    ("F, 1", "fit the photo to the window; a pixel to a pixel"),
+    ("+, −", "magnify, make smaller"),
+    ("B", "the photo as it was, and back"),
+    ("G", "the glare alone, and back"),
+    ("W", "a wipe between the photo as it was and with its glare"),
+    ("L", "the lights' handles"),
+    ("I", "the loupe"),
+    ("[, ]", "a third of a stop darker, lighter"),
+    ("T", "the next tone map"),
+    ("arrows", "move the selected light by a pixel of the photo, with Shift by ten"),
+    ("M, Delete", "mute, delete the selected light"),
+    ("Ctrl+Tab, Ctrl+W", "the next photo; close this one"),
+];
+
+/// What keys ask of the window rather than of one document.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Command {
+    /// Show the next document.
+    Next,
+    /// Close this one.
+    Close,
+}
+
+/// Does what the keys ask, unless text is being edited.
+pub fn apply(context: &Context, document: &mut Document, placement: Option<&Placement>) -> Option<Command> {
+    if context.text_edit_focused() {
+        return None;
+    }
+    let pressed = |key| context.input_mut(|input| input.consume_key(Modifiers::NONE, key));
+    look_at(document, placement, &pressed);
+    let viewing = &mut document.viewing;
+    let other = |shows: Shows, now: Shows| if now == shows { Shows::Picture } else { shows };
+    if pressed(Key::B) {
+        viewing.shows = other(Shows::Photo, viewing.shows);
+    }
+    if pressed(Key::G) {
+        viewing.shows = other(Shows::Glare, viewing.shows);
+    }
+    if pressed(Key::W) {
+        viewing.wipe = viewing.wipe.map_or(Some(0.5), |_| None);
+    }
+    if pressed(Key::L) {
+        viewing.handles = !viewing.handles;
+    }
+    if pressed(Key::I) {
+        viewing.loupe = !viewing.loupe;
+    }
+    lamp(context, document, &pressed);
+    let command = |key| context.input_mut(|input| input.consume_key(Modifiers::CTRL, key));
+    if command(Key::Tab) {
+        return Some(Command::Next);
+    }
+    command(Key::W).then_some(Command::Close)
+}
+
+fn look_at(document: &mut Document, placement: Option<&Placement>, pressed: &dyn Fn(Key) -> bool) {
+    let viewing = &mut document.viewing;
+    if pressed(Key::F) {
+        viewing.zoom = Zoom::Fit;
+    }
+    if let Some(placement) = placement {
+        if pressed(Key::Num1) {
+            viewing.zoom = Zoom::Fixed { pitch: 1.0, center: placement.center() };
+        }
+        if pressed(Key::Plus) || pressed(Key::Equals) {
+            viewing.zoom = placement.zoomed(1.25, placement.rect.center());
+        }
+        if pressed(Key::Minus) {
+            viewing.zoom = placement.zoomed(0.8, placement.rect.center());
+        }
+    }
+    for (key, stops) in [(Key::OpenBracket, -1.0), (Key::CloseBracket, 1.0)] {
+        if pressed(key) {
+            viewing.exposure = (viewing.exposure + stops / 3.0).clamp(-MOST_EXPOSURE, MOST_EXPOSURE);
+        }
+    }
+    if pressed(Key::T) {
+        viewing.tone_map = match viewing.tone_map {
+            ToneMap::None => ToneMap::Reinhard,
+            ToneMap::Reinhard => ToneMap::Aces,
+            ToneMap::Aces => ToneMap::Agx,
+            ToneMap::Agx => ToneMap::None,
+        };
+    }
+}
+
+fn lamp(context: &Context, document: &mut Document, pressed: &dyn Fn(Key) -> bool) {
+    let Some(selected) = document.selected.filter(|&index| index < document.look.lamps.len()) else { return };
+    let pixel = document.frame.pixel_size();
+    let lamp = &mut document.look.lamps[selected];
+    let arrows = [
+        (Key::ArrowLeft, DVec2::NEG_X),
+        (Key::ArrowRight, DVec2::X),
+        (Key::ArrowUp, DVec2::Y),
+        (Key::ArrowDown, DVec2::NEG_Y),
+    ];
+    // A slider that has the keyboard takes the arrows for itself.
+    if context.memory(|memory| memory.focused()).is_none() {
+        for (key, way) in arrows {
+            for (modifiers, pixels) in [(Modifiers::SHIFT, 10.0), (Modifiers::NONE, 1.0)] {
+                if context.input_mut(|input| input.consume_key(modifiers, key)) {
+                    lamp.light.position += way * pixels * pixel;
+                }
+            }
+        }
+    }
+    if pressed(Key::M) {
+        lamp.muted = !lamp.muted;
+    }
+    if pressed(Key::Delete) {
+        document.look.lamps.remove(selected);
+        document.selected = None;
+    }
+}

@@ -1,0 +1,181 @@
+//! The window itself: winit's events in, frames out. It sleeps while nothing happens.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use winit::application::ApplicationHandler;
+use winit::dpi::LogicalSize;
+use winit::event::{StartCause, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy};
+use winit::window::{Window, WindowId};
+
+use super::app::App;
+use crate::gpu::{Display, Screen, Surface, event_loop};
+use crate::scene::Lens;
+use crate::{Error, Result};
+
+/// Another thread asks for a frame.
+#[derive(Debug, Clone, Copy)]
+struct Wanted;
+
+/// Opens a window on photos and stays until it is closed.
+///
+/// # Errors
+/// [`Error::NoDisplay`] and [`Error::NoContext`] before there is any window; [`Error::Gl`] where the driver fails
+/// later. A photo that cannot be read is told of in the window.
+pub fn run(photos: &[PathBuf], lens: Lens) -> Result<()> {
+    let event_loop = event_loop::<Wanted>()?;
+    let display = Display::open(&event_loop)?;
+    let mut viewer = Viewer {
+        waiting: Some(Start { display, photos: photos.to_vec(), lens, proxy: event_loop.create_proxy() }),
+        open: None,
+        failed: None,
+    };
+    let ended = event_loop.run_app(&mut viewer).map_err(|error| Error::NoDisplay { reason: error.to_string() });
+    viewer.failed.map_or(ended, Err)
+}
+
+/// What the window is opened with.
+struct Start {
+    display: Display,
+    photos: Vec<PathBuf>,
+    lens: Lens,
+    proxy: EventLoopProxy<Wanted>,
+}
+
+/// The window, once the event loop runs.
+struct Viewer {
+    waiting: Option<Start>,
+    open: Option<Open>,
+    failed: Option<Error>,
+}
+
+/// An open window. The surface goes last: GL objects are freed while its context is current.
+struct Open {
+    app: App,
+    screen: Screen,
+    input: egui_winit::State,
+    hidden: bool,
+    title: String,
+    surface: Surface,
+}
+
+impl Start {
+    fn open(self, event_loop: &ActiveEventLoop) -> Result<Open> {
+        // Shown with its first frame, so that nothing flashes.
+        let attributes = Window::default_attributes()
+            .with_title("vglare")
+            .with_inner_size(LogicalSize::new(1280.0, 800.0))
+            .with_visible(false);
+        let (device, surface) = self.display.window(event_loop, attributes)?;
+        surface.set_vsync(true);
+        let proxy = self.proxy;
+        let wake = Arc::new(move || {
+            // The loop is gone only when the window is.
+            let _ = proxy.send_event(Wanted);
+        });
+        let mut app = App::new(&device, self.lens, wake)?;
+        self.photos.into_iter().for_each(|path| app.open(path));
+        let window = surface.window();
+        let input = egui_winit::State::new(
+            app.context().clone(),
+            egui::ViewportId::ROOT,
+            window,
+            Some(window.scale_factor() as f32),
+            window.theme(),
+            Some(app.max_texture_side()),
+        );
+        let screen = Screen::of_window(&device, window.inner_size().into());
+        Ok(Open { app, screen, input, hidden: true, title: String::new(), surface })
+    }
+}
+
+impl Open {
+    /// Draws a frame; says when the next one is due.
+    fn frame(&mut self) -> Result<Option<Instant>> {
+        let window = self.surface.window();
+        let size: [u32; 2] = window.inner_size().into();
+        // A window without pixels shows nothing; the next event that gives it some draws it.
+        if size.contains(&0) {
+            return Ok(None);
+        }
+        if size != self.screen.size() {
+            self.surface.resize(size);
+            self.screen.set_size(size);
+        }
+        let input = self.input.take_egui_input(window);
+        let shown = self.app.frame(input, &self.screen)?;
+        self.surface.swap()?;
+        self.input.handle_platform_output(window, shown.platform);
+        let title = self.app.title();
+        if title != self.title {
+            window.set_title(&title);
+            self.title = title;
+        }
+        if std::mem::take(&mut self.hidden) {
+            window.set_visible(true);
+        }
+        Ok(Instant::now().checked_add(shown.repaint_after))
+    }
+}
+
+impl Viewer {
+    fn fail(&mut self, event_loop: &ActiveEventLoop, error: Error) {
+        self.failed = Some(error);
+        event_loop.exit();
+    }
+
+    fn redraw(&mut self, event_loop: &ActiveEventLoop) {
+        let Some(open) = &mut self.open else { return };
+        match open.frame() {
+            Ok(None) => event_loop.set_control_flow(ControlFlow::Wait),
+            Ok(Some(due)) if due.saturating_duration_since(Instant::now()) < Duration::from_millis(1) => {
+                open.surface.window().request_redraw();
+            }
+            Ok(Some(due)) => event_loop.set_control_flow(ControlFlow::WaitUntil(due)),
+            Err(error) => self.fail(event_loop, error),
+        }
+    }
+}
+
+impl ApplicationHandler<Wanted> for Viewer {
+    fn resumed(&mut self, event_loop: &ActiveEventLoop) {
+        let Some(start) = self.waiting.take() else { return };
+        match start.open(event_loop) {
+            Ok(open) => {
+                // A window that is not shown yet gets no request to draw, on some displays.
+                open.surface.resize(open.screen.size());
+                self.open = Some(open);
+                self.redraw(event_loop);
+            }
+            Err(error) => self.fail(event_loop, error),
+        }
+    }
+
+    fn new_events(&mut self, event_loop: &ActiveEventLoop, cause: StartCause) {
+        if let (StartCause::ResumeTimeReached { .. }, Some(open)) = (cause, &self.open) {
+            event_loop.set_control_flow(ControlFlow::Wait);
+            open.surface.window().request_redraw();
+        }
+    }
+
+    fn user_event(&mut self, _: &ActiveEventLoop, _: Wanted) {
+        if let Some(open) = &self.open {
+            open.surface.window().request_redraw();
+        }
+    }
+
+    fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let Some(open) = &mut self.open else { return };
+        match event {
+            WindowEvent::CloseRequested => event_loop.exit(),
+            WindowEvent::RedrawRequested => self.redraw(event_loop),
+            event => {
+                if open.input.on_window_event(open.surface.window(), &event).repaint {
+                    open.surface.window().request_redraw();
+                }
+            }
+        }
+    }
+}
