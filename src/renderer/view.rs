@@ -1,12 +1,14 @@
 //! The picture on the device, looked at without bringing it back.
 
+use std::rc::Rc;
+
 use glam::{DMat3, DVec2};
 
 use super::{Renderer, Settings, convert};
 use crate::Result;
 use crate::frame::Frame;
 use crate::gpu::view::View as Uniforms;
-use crate::gpu::{Region, Screen};
+use crate::gpu::{Device, Region, Screen};
 use crate::photo::ToneMap;
 
 /// How a picture is looked at; the picture itself does not depend on it.
@@ -78,6 +80,11 @@ impl Renderer {
         let there = |width: u32, height: u32| column < width && row < height;
         let both = [photo, picture].iter().all(|texture| there(texture.level_width(0), texture.level_height(0)));
         both.then(|| [photo, picture].map(|texture| texture.read_texel([column, row])))
+    }
+
+    /// The device that it renders on.
+    pub fn device(&self) -> &Rc<Device> {
+        self.runner.device()
     }
 
     /// Forgets the photo and the picture on the device.

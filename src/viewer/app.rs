@@ -11,7 +11,7 @@ use super::document::Document;
 use super::loader::{Loader, Wake};
 use super::shortcuts::{self, Command};
 use super::stage::{Counts, Stage};
-use super::{panels, viewing};
+use super::{control, panels, viewing};
 use crate::Result;
 use crate::gpu::paint::Painter;
 use crate::gpu::{Device, Screen};
@@ -120,6 +120,11 @@ impl App {
     /// How often each kind of work was done.
     pub fn counts(&self) -> Counts {
         self.stage.counts()
+    }
+
+    /// Where the slider of the control called `name` was drawn last, in points, for scripts to drag.
+    pub fn control(&self, name: &str) -> Option<egui::Rect> {
+        self.context.data(|data| data.get_temp(control::place(name)))
     }
 
     /// egui's side of it.
@@ -244,7 +249,7 @@ impl App {
                     if tab.on_hover_text(document.path.display().to_string()).clicked() {
                         self.current = index;
                     }
-                    if ui.small_button("✕").on_hover_text("Close it (Ctrl+W)").clicked() {
+                    if ui.small_button("×").on_hover_text("Close it (Ctrl+W)").clicked() {
                         closed = Some(index);
                     }
                 }
@@ -272,7 +277,7 @@ impl App {
         for (index, text) in self.notices.iter().enumerate() {
             Panel::bottom(("notice", index)).show(ui, |ui| {
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    if ui.button("✕").on_hover_text("Dismiss").clicked() {
+                    if ui.button("×").on_hover_text("Dismiss").clicked() {
                         dismissed = Some(index);
                     }
                     ui.with_layout(Layout::left_to_right(Align::Center), |ui| {

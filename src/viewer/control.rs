@@ -5,6 +5,11 @@ use std::ops::RangeInclusive;
 
 use egui::{DragValue, Label, Response, Sense, Slider, Ui};
 
+/// Where [`App::control`](super::App::control) finds a control's slider.
+pub fn place(name: &str) -> egui::Id {
+    egui::Id::new(("control", name))
+}
+
 /// A number that can be set.
 pub struct Number {
     /// What it is called.
@@ -36,6 +41,7 @@ impl Number {
             if name.double_clicked() {
                 *value = reset;
             }
+            ui.ctx().data_mut(|data| data.insert_temp(place(self.name), rail.rect));
             (name | rail | number).on_hover_text(tip)
         })
         .inner

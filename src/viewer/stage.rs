@@ -52,7 +52,6 @@ struct Made {
 /// Renders the current document.
 pub struct Stage {
     renderer: Renderer,
-    device: Rc<Device>,
     made: Made,
     ghosts: Vec<Ghost>,
     plan: Option<Plan>,
@@ -68,7 +67,6 @@ impl Stage {
     pub fn new(device: &Rc<Device>) -> Result<Self> {
         Ok(Self {
             renderer: Renderer::new(device)?,
-            device: device.clone(),
             made: Made::default(),
             ghosts: Vec::new(),
             plan: None,
@@ -119,7 +117,7 @@ impl Stage {
             self.ghosts = wanted.0.ghosts();
         }
         let started = Instant::now();
-        let info = self.device.info();
+        let info = self.renderer.device().info();
         let unlimited = Request::new(document.frame, tolerance);
         let request = Request {
             loop_rounds: info.loop_rounds().unwrap_or(usize::MAX),
@@ -141,7 +139,7 @@ impl Stage {
 
     fn elapsed(&self, started: Instant) -> f64 {
         // A graphics card goes on by itself, and must not be waited for.
-        if self.device.info().software {
+        if self.renderer.device().info().software {
             self.renderer.finish();
         }
         started.elapsed().as_secs_f64() * 1e3

@@ -28,3 +28,5 @@ mod special;
 mod sphere;
 mod support;
 mod tiles;
+mod view;
+mod viewer;

@@ -38,7 +38,7 @@ pub fn show(ui: &mut Ui, document: &mut Document, _: &Stage) {
             if row.on_hover_text("Its flux: radiance times area, in half picture heights squared").clicked() {
                 document.selected = Some(index);
             }
-            if ui.small_button("✕").on_hover_text("Delete it (Delete)").clicked() {
+            if ui.small_button("×").on_hover_text("Delete it (Delete)").clicked() {
                 gone = Some(index);
             }
         });

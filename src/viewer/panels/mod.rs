@@ -1,6 +1,7 @@
 //! The controls, one file a panel: a function that shows it, and its line in [`PANELS`].
 
 mod accuracy;
+mod keys;
 mod lights;
 mod look;
 mod performance;
@@ -21,12 +22,13 @@ struct Panel {
 }
 
 /// Every panel, from the top.
-const PANELS: [Panel; 5] = [
+const PANELS: [Panel; 6] = [
     Panel { title: "Look", open: true, show: look::show },
     Panel { title: "View", open: true, show: view::show },
     Panel { title: "Lights", open: true, show: lights::show },
     Panel { title: "Accuracy", open: true, show: accuracy::show },
     Panel { title: "Performance", open: false, show: performance::show },
+    Panel { title: "Keys", open: false, show: keys::show },
 ];
 
 /// Shows every panel of a document.

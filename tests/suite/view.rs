@@ -1,0 +1,140 @@
+//! The view on the screen: the CPU's tone maps, rows from the top, means of what is made smaller, the wipe.
+
+use glam::{DMat3, DVec2};
+use vglare::frame::Frame;
+use vglare::gpu::{Region, Screen};
+use vglare::photo::ToneMap;
+use vglare::plan::{Request, plan};
+use vglare::renderer::{Renderer, Settings, View};
+
+use crate::support::{on_each_backend, scenes};
+
+const SURROUND: [f32; 3] = [0.2, 0.4, 0.6];
+
+fn view() -> View {
+    View {
+        origin: DVec2::ZERO,
+        pitch: 1.0,
+        exposure: 0.0,
+        tone_map: ToneMap::None,
+        gamut: DMat3::IDENTITY,
+        wipe: 0.0,
+        surround: SURROUND,
+    }
+}
+
+/// The code that a display gets for linear light in 0 to 1.
+fn code(light: f32) -> f32 {
+    255.0 * if light <= 0.003_130_8 { light * 12.92 } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// A photo of one row or more on a screen of the same size or another.
+fn shown(renderer: &mut Renderer, photo: &[[f32; 4]], width: u32, view: &View, size: [u32; 2]) -> Vec<[u8; 4]> {
+    renderer.load(Frame::full(width, photo.len() as u32 / width), photo).unwrap();
+    let screen = Screen::hidden(renderer.device(), size).unwrap();
+    renderer.view(view, &screen, screen.whole()).unwrap();
+    screen.read()
+}
+
+#[test]
+fn tone_maps_are_those_of_the_cpu() {
+    let mut photo: Vec<[f32; 4]> = Vec::new();
+    for step in 0..600 {
+        let light = 2.0f32.powf(step as f32 / 20.0 - 15.0);
+        photo.push([light, 0.3 * light, 0.05, 1.0]);
+    }
+    for odd in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -0.5, f32::MAX, 0.0] {
+        photo.push([odd, 0.5, 0.25, 1.0]);
+    }
+    on_each_backend(|_, renderer| {
+        for tone_map in [ToneMap::None, ToneMap::Reinhard, ToneMap::Aces, ToneMap::Agx] {
+            for exposure in [0.0, -2.0] {
+                let view = View { tone_map, exposure, ..view() };
+                let got = shown(renderer, &photo, photo.len() as u32, &view, [photo.len() as u32, 1]);
+                for (light, got) in photo.iter().zip(got) {
+                    let gain = (exposure as f32).exp2();
+                    let want = tone_map.apply([light[0] * gain, light[1] * gain, light[2] * gain]).map(code);
+                    let off = (0..3).map(|c| (f32::from(got[c]) - want[c]).abs()).fold(0.0, f32::max);
+                    // Half a code for rounding, half for powers in f32.
+                    assert!(off <= 1.0, "{tone_map:?} {exposure} {light:?}: {got:?} for {want:?}");
+                }
+            }
+        }
+    });
+}
+
+#[test]
+fn rows_count_from_the_top_and_pixels_are_squares() {
+    // Every pixel of its own colour: red by column, green by row.
+    let light = |code: u32| ((code as f32 / 255.0 + 0.055) / 1.055).powf(2.4);
+    let photo: Vec<_> = (0..12).map(|k| [light(40 + 20 * (k % 4)), light(50 + 30 * (k / 4)), 0.0, 1.0]).collect();
+    on_each_backend(|_, renderer| {
+        renderer.load(Frame::full(4, 3), &photo).unwrap();
+        let screen = Screen::hidden(renderer.device(), [40, 30]).unwrap();
+        screen.clear([0.0; 3]);
+        let region = Region { x: 5, y: 7, width: 22, height: 20 };
+        // The photo begins a pixel of its own right of and below the region's corner; 5 of the screen to one of it.
+        renderer.view(&View { origin: DVec2::splat(-1.0), pitch: 0.2, ..view() }, &screen, region).unwrap();
+        let pixels = screen.read();
+        for (index, got) in pixels.iter().enumerate() {
+            let (i, j) = (index as u32 % 40, index as u32 / 40);
+            let inside = (5..27).contains(&i) && (7..27).contains(&j);
+            let on_photo = inside && i >= 10 && j >= 12;
+            let want = match (inside, on_photo) {
+                (false, _) => [0.0; 3],
+                (true, false) => SURROUND.map(|c| 255.0 * c),
+                (true, true) => [(40 + 20 * ((i - 10) / 5)) as f32, (50 + 30 * ((j - 12) / 5)) as f32, 0.0],
+            };
+            let off = (0..3).map(|c| (f32::from(got[c]) - want[c]).abs()).fold(0.0, f32::max);
+            assert!(off <= 1.0, "column {i}, row {j}: {got:?} for {want:?}");
+        }
+    });
+}
+
+#[test]
+fn what_is_made_smaller_is_the_mean_of_its_light() {
+    let photo: Vec<_> = (0..30 * 20u32).map(|k| [(k * 7919 % 100) as f32 / 100.0, 0.5, 0.0, 1.0]).collect();
+    on_each_backend(|_, renderer| {
+        for pitch in [2.0, 5.0, 2.5] {
+            let size = [(30.0 / pitch) as u32, (20.0 / pitch) as u32];
+            let got = shown(renderer, &photo, 30, &View { pitch, ..view() }, size);
+            for (index, got) in got.iter().enumerate() {
+                let (i, j) = (index as u32 % size[0], index as u32 / size[0]);
+                let overlap = |k: u32, cell: u32| {
+                    let (low, high) = (f64::from(cell) * pitch, f64::from(cell + 1) * pitch);
+                    (high.min(f64::from(k) + 1.0) - low.max(f64::from(k))).max(0.0)
+                };
+                let mut mean = 0.0;
+                for (k, pixel) in photo.iter().enumerate() {
+                    let (column, row) = (k as u32 % 30, k as u32 / 30);
+                    mean += overlap(column, i) * overlap(row, j) * f64::from(pixel[0]) / (pitch * pitch);
+                }
+                let off = (f32::from(got[0]) - code(mean as f32)).abs();
+                assert!(off <= 1.0, "{pitch} at {i}, {j}: {got:?} for {mean}");
+            }
+        }
+    });
+}
+
+#[test]
+fn the_wipe_parts_photo_and_picture() {
+    let frame = Frame::full(16, 8);
+    let photo = vec![[0.1, 0.1, 0.1, 1.0]; 128];
+    let ghosts = [scenes::one([0.0, 0.0], 1.0, [0.5, 0.0, 0.0])];
+    on_each_backend(|_, renderer| {
+        renderer.set_scene(&ghosts, &plan(&ghosts, &Request::new(frame, 1e-3)).unwrap()).unwrap();
+        renderer.load(frame, &photo).unwrap();
+        renderer.draw(frame, &Settings::default()).unwrap();
+        let screen = Screen::hidden(renderer.device(), [20, 8]).unwrap();
+        let region = Region { x: 4, y: 0, width: 16, height: 8 };
+        renderer.view(&View { wipe: 6.0, ..view() }, &screen, region).unwrap();
+        let grey = code(0.1).round() as u8;
+        for (index, pixel) in screen.read().iter().enumerate().filter(|(index, _)| index % 20 >= 4) {
+            let before = index % 20 < 10;
+            assert_eq!(pixel[0].abs_diff(grey) <= 1, before, "{index}: {pixel:?}");
+            assert!(pixel[1].abs_diff(grey) <= 1, "{index}: {pixel:?}");
+        }
+        assert!(renderer.pixel(8, 4).is_some_and(|[photo, picture]| photo[0] == 0.1 && picture[0] > 0.5));
+        assert_eq!(renderer.pixel(16, 4), None);
+    });
+}

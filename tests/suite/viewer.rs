@@ -1,0 +1,205 @@
+//! The window without a window: events in, state and pixels out, and nothing computed that did not change.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, RawInput, Rect, Vec2, pos2, vec2};
+use glam::DVec2;
+use vglare::gpu::{Backend, Device, Screen};
+use vglare::photo::{self, Photo, WriteOptions};
+use vglare::scene::presets;
+use vglare::viewer::{App, Document, Shows};
+
+const SIZE: [u32; 2] = [900, 500];
+
+/// A person at a screen that nobody sees.
+struct Session {
+    app: App,
+    screen: Screen,
+    time: f64,
+    due: Duration,
+}
+
+impl Session {
+    fn new() -> Self {
+        let device = Device::open(&Backend::ALL).unwrap();
+        let lens = presets::named(presets::DEFAULT_PRESET).unwrap();
+        let app = App::new(&device, lens, Arc::new(|| {})).unwrap();
+        let screen = Screen::hidden(&device, SIZE).unwrap();
+        Self { app, screen, time: 0.0, due: Duration::ZERO }
+    }
+
+    /// With a synthetic photo open.
+    fn with_photo() -> Self {
+        let mut session = Self::new();
+        let lens = presets::named(presets::DEFAULT_PRESET).unwrap();
+        session.app.add(Document::new(Path::new("lamp.exr"), lamp(), lens));
+        session.settle();
+        session
+    }
+
+    fn frame(&mut self, events: Vec<Event>) {
+        self.time += 0.02;
+        let rect = Rect::from_min_size(Pos2::ZERO, vec2(SIZE[0] as f32, SIZE[1] as f32));
+        let input =
+            RawInput { screen_rect: Some(rect), time: Some(self.time), events, focused: true, ..RawInput::default() };
+        self.due = self.app.frame(input, &self.screen).unwrap().repaint_after;
+    }
+
+    /// Frames until nothing moves any more.
+    fn settle(&mut self) {
+        for _ in 0..100 {
+            self.frame(Vec::new());
+            if self.due > Duration::from_secs(1) {
+                return;
+            }
+        }
+        panic!("it never comes to rest");
+    }
+
+    fn button(&self, pos: Pos2, pressed: bool) -> Event {
+        Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE }
+    }
+
+    fn drag(&mut self, from: Pos2, by: Vec2) {
+        self.frame(vec![Event::PointerMoved(from)]);
+        self.frame(vec![self.button(from, true)]);
+        for step in 1..=8 {
+            self.frame(vec![Event::PointerMoved(from + by * (step as f32 / 8.0))]);
+        }
+        self.frame(vec![self.button(from + by, false)]);
+        self.frame(vec![Event::PointerMoved(pos2(2.0, 2.0))]);
+        self.settle();
+    }
+
+    fn press(&mut self, key: Key) {
+        for pressed in [true, false] {
+            let modifiers = Modifiers::NONE;
+            self.frame(vec![Event::Key { key, physical_key: None, pressed, repeat: false, modifiers }]);
+        }
+        self.settle();
+    }
+
+    fn document(&self) -> &Document {
+        self.app.document().unwrap()
+    }
+
+    /// Where a point of the picture plane is on the screen.
+    fn at(&self, position: DVec2) -> Pos2 {
+        self.app.placement().unwrap().to_screen(self.document().place(position))
+    }
+
+    /// Red, green and blue on the screen at a point, added up.
+    fn brightness(&self, at: Pos2) -> u32 {
+        let pixel = self.screen.read()[at.y as usize * SIZE[0] as usize + at.x as usize];
+        pixel[..3].iter().map(|&code| u32::from(code)).sum()
+    }
+}
+
+/// A dark room with one lamp.
+fn lamp() -> Photo {
+    let pixel = |i: i32, j: i32| {
+        let light = if (i - 40).pow(2) + (j - 20).pow(2) < 9 { 400.0 } else { 0.02 };
+        [light, light, light * 0.8, 1.0]
+    };
+    Photo::new(120, 80, (0..80).flat_map(|j| (0..120).map(move |i| pixel(i, j))).collect())
+}
+
+#[test]
+fn a_light_is_dragged_and_only_the_spectrum_is_computed_anew() {
+    let mut session = Session::with_photo();
+    let light = session.document().look.lamps[0].light.position;
+    let (before, from) = (session.app.counts(), session.at(light));
+    assert_eq!((before.uploads, before.spectra, before.composites), (1, 1, 1));
+    let dark = session.at(DVec2::new(0.3, 0.7));
+    let was = session.brightness(dark);
+    session.drag(from, dark - from);
+    let moved = session.document().look.lamps[0].light.position;
+    assert!((moved - DVec2::new(0.3, 0.7)).length() < 0.02, "{moved}");
+    assert!(session.brightness(dark) > was + 30, "{} after {was}", session.brightness(dark));
+    let after = session.app.counts();
+    assert_eq!(after.uploads, 1);
+    assert!(after.spectra > before.spectra && after.composites - before.composites == after.spectra - before.spectra);
+    assert_eq!(session.document().selected, Some(0));
+}
+
+#[test]
+fn a_light_can_be_dragged_off_the_picture() {
+    let mut session = Session::with_photo();
+    let from = session.at(session.document().look.lamps[0].light.position);
+    let canvas = session.app.placement().unwrap().rect;
+    session.drag(from, vec2(0.0, canvas.top() + 1.0 - from.y));
+    let y = session.document().look.lamps[0].light.position.y;
+    assert!(y > 1.0, "{y}");
+}
+
+#[test]
+fn the_strength_slider_asks_for_composites_only() {
+    let mut session = Session::with_photo();
+    let before = session.app.counts();
+    let rail = session.app.control("Strength").unwrap();
+    session.drag(rail.center(), vec2(rail.width(), 0.0));
+    assert_eq!(session.document().look.settings.strength, 10.0);
+    let after = session.app.counts();
+    assert_eq!((after.uploads, after.spectra), (before.uploads, before.spectra));
+    assert!(after.composites > before.composites);
+}
+
+#[test]
+fn before_and_after_change_places_without_computing() {
+    let mut session = Session::with_photo();
+    let beside = session.at(session.document().look.lamps[0].light.position + DVec2::new(0.2, 0.0));
+    let (counts, after) = (session.app.counts(), session.screen.read());
+    let bright = session.brightness(beside);
+    session.press(Key::B);
+    assert_eq!(session.document().viewing.shows, Shows::Photo);
+    assert!(session.brightness(beside) < bright);
+    session.press(Key::B);
+    let now = session.app.counts();
+    assert_eq!((now.uploads, now.spectra, now.composites), (counts.uploads, counts.spectra, counts.composites));
+    assert!(session.screen.read() == after, "the picture comes back as it was");
+}
+
+#[test]
+fn passes_and_painter_leave_each_other_alone() {
+    let mut session = Session::with_photo();
+    let first = session.screen.read();
+    session.press(Key::G);
+    assert!(session.screen.read() != first);
+    // The picture is drawn anew after many frames of egui's.
+    session.press(Key::G);
+    assert!(session.screen.read() == first);
+}
+
+#[test]
+fn an_idle_frame_computes_nothing_and_asks_for_no_other() {
+    let mut session = Session::with_photo();
+    let counts = session.app.counts();
+    session.frame(Vec::new());
+    let now = session.app.counts();
+    assert_eq!((now.uploads, now.spectra, now.composites), (counts.uploads, counts.spectra, counts.composites));
+    assert!(session.due > Duration::from_secs(1), "{:?}", session.due);
+}
+
+#[test]
+fn a_bad_file_is_told_of_and_the_picture_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let good = folder.path().join("good.exr");
+    photo::write(&good, &lamp(), &WriteOptions::default()).unwrap();
+    let mut session = Session::new();
+    for path in [good, folder.path().join("missing.exr")] {
+        session.app.open(path);
+        let started = Instant::now();
+        while session.app.is_reading() {
+            assert!(started.elapsed() < Duration::from_secs(20), "it is never read");
+            std::thread::sleep(Duration::from_millis(5));
+            session.frame(Vec::new());
+        }
+    }
+    session.settle();
+    assert_eq!(session.document().name(), "good.exr");
+    assert!(session.app.notices().len() == 1 && session.app.notices()[0].contains("missing.exr"));
+    let lit = session.at(session.document().look.lamps[0].light.position);
+    assert!(session.brightness(lit) > 600);
+}
