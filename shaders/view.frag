@@ -57,5 +57,8 @@ void main() {
     }
     bool before = pixel.x < wipe;
     vec3 light = pitch > 1.0 ? mean(before, at, last) : texel(before, ivec2(at));
-    shown = vec4(srgb_encoded(tone_mapped(gain * (gamut * light))), 1.0);
+#ifdef GAMUT
+    light = gamut * light;
+#endif
+    shown = vec4(srgb_encoded(tone_mapped(gain * light)), 1.0);
 }

@@ -55,6 +55,8 @@ pub struct Renderer {
     view: ViewPass,
     exchange: Exchange,
     scene: Option<(Vec<Ghost>, Plan)>,
+    /// The frame whose field is held, if any.
+    held: Option<Frame>,
     /// Room for the next scene's ghosts.
     room: Vec<Ghost>,
     tile_pixels: usize,
@@ -78,6 +80,7 @@ impl Renderer {
             // The software renderer's memory is the photo's own: there a buffer is one more copy.
             exchange: Exchange::new(!device.info().software),
             scene: None,
+            held: None,
             room: Vec::new(),
             tile_pixels: tiles::PIXELS,
             runner,
@@ -203,7 +206,7 @@ impl Renderer {
     /// [`Error::Gl`] where the driver refuses, or where there is no scene.
     pub fn draw(&mut self, frame: Frame, settings: &Settings) -> Result<()> {
         let uniforms = self.start(frame, settings)?;
-        let source = self.evaluate(frame, frame.window)?;
+        let source = self.whole(frame)?;
         self.composite.draw(&self.runner, convert::variant(source, settings), &uniforms)?;
         Ok(())
     }
@@ -223,6 +226,7 @@ impl Renderer {
 
     /// Forgets the scene, so that the next [`Renderer::set_scene`] computes its spectrum anew.
     pub fn forget_scene(&mut self) {
+        self.held = None;
         if let Some((ghosts, _)) = self.scene.take() {
             self.room = ghosts;
         }
@@ -293,6 +297,7 @@ impl Renderer {
     /// [`Error::Gl`] where the driver refuses, or where there is no scene.
     pub fn field(&mut self, frame: Frame, mut visit: impl FnMut(Window, &[[f64; 3]])) -> Result<()> {
         let scale = self.plan()?.scale;
+        self.held = None;
         for tile in self.tiles(frame.window) {
             let source = self.evaluate(frame, tile)?;
             let mut pixels = vec![[0.0f32; 4]; tile.pixels()];
@@ -350,6 +355,7 @@ impl Renderer {
     fn reduce(&mut self, frame: Frame) -> Result<()> {
         let scale = self.plan()?.scale.map(|scale| scale as f32);
         self.range.reset();
+        self.held = None;
         for tile in self.tiles(frame.window) {
             let source = self.evaluate(frame, tile)?;
             let field = self.field.draw(&self.runner, source, tile.width, tile.height)?;

@@ -1,6 +1,6 @@
 //! The passes that ask an evaluator for the field: at every pixel of a tile, or at a list of its pixels.
 
-use super::layout::PROBES;
+use super::layout::{FIELD, PROBES};
 use super::resource::{Buffer, Scratch, Texel, Texture};
 use super::runner::Runner;
 use crate::Result;
@@ -17,6 +17,9 @@ pub(crate) struct Source {
 }
 
 impl Source {
+    /// The field that [`FieldPass::draw`] drew last, which [`FieldPass::bind`] binds.
+    pub const HELD: Self = Self { evaluator: "\"evaluators/held.glsl\"", bell: None, many_ghosts: false };
+
     /// What a shader is specialised with to include this function.
     pub fn defines(self) -> Vec<(&'static str, &'static str)> {
         let mut defines = vec![("EVALUATOR", self.evaluator)];
@@ -45,6 +48,13 @@ impl FieldPass {
         let field = self.field.get(runner.device(), Texel::Rgba, width, height)?;
         runner.draw("field.frag", &source.defines(), field, 0)?;
         Ok(field)
+    }
+
+    /// Binds what was drawn last, for [`Source::HELD`].
+    pub fn bind(&self) {
+        if let Some(field) = self.field.current() {
+            field.bind(FIELD);
+        }
     }
 
     /// The field at pixels of the tile, counted from its corner, in units of its scale.

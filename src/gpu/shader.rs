@@ -38,6 +38,7 @@ const SOURCES: &[(&str, &str)] = &sources![
     "evaluators/direct.glsl",
     "evaluators/graf.glsl",
     "evaluators/grid.glsl",
+    "evaluators/held.glsl",
     "evaluators/rows.glsl",
     "evaluators/series.glsl",
     "field.frag",

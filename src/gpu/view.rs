@@ -6,6 +6,7 @@ use super::layout::{PASS, PHOTO, PICTURE};
 use super::resource::{Buffer, Texture};
 use super::runner::Runner;
 use super::screen::{Region, Screen};
+use super::shader::Define;
 use crate::Result;
 
 /// The view's uniforms; as in `view.frag`.
@@ -40,12 +41,12 @@ impl ViewPass {
         Ok(Self { uniforms: Buffer::new(runner.device(), 1)? })
     }
 
-    /// Draws a region of the screen. `tone_map` is the number of a map in `shared/tone.glsl`.
+    /// Draws a region of the screen, with the map of `shared/tone.glsl` whose number `TONE_MAP` is.
     pub fn draw(
         &mut self,
         runner: &Runner,
         [photo, picture]: [&Texture; 2],
-        tone_map: &'static str,
+        defines: &[Define<'_>],
         view: &View,
         screen: &Screen,
         region: Region,
@@ -54,6 +55,6 @@ impl ViewPass {
         self.uniforms.bind_uniform(PASS);
         photo.bind(PHOTO);
         picture.bind(PICTURE);
-        runner.draw_screen("view.frag", &[("TONE_MAP", tone_map)], screen, region)
+        runner.draw_screen("view.frag", defines, screen, region)
     }
 }

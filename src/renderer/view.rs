@@ -7,6 +7,7 @@ use glam::{DMat3, DVec2};
 use super::{Renderer, Settings, convert};
 use crate::Result;
 use crate::frame::Frame;
+use crate::gpu::field::Source;
 use crate::gpu::view::View as Uniforms;
 use crate::gpu::{Device, Region, Screen};
 use crate::photo::ToneMap;
@@ -25,8 +26,8 @@ pub struct View {
     pub exposure: f64,
     /// How light comes into the display's range next.
     pub tone_map: ToneMap,
-    /// From the photo's primaries to Rec.709's.
-    pub gamut: DMat3,
+    /// From the photo's primaries to Rec.709's, where they differ.
+    pub gamut: Option<DMat3>,
     /// Columns of the region from this one on show what was drawn, those before it the photo as it was.
     pub wipe: f64,
     /// What surrounds the photo, RGB as it is shown, 0 to 1.
@@ -34,13 +35,36 @@ pub struct View {
 }
 
 impl Renderer {
+    /// Draws the field once and holds it: until the scene changes, [`Renderer::draw`] and [`Renderer::draw_glare`] of
+    /// this frame look it up, and a change of settings costs no evaluation.
+    ///
+    /// # Errors
+    /// [`crate::Error::Gl`] where the driver refuses, or where there is no scene.
+    pub fn hold_field(&mut self, frame: Frame) -> Result<()> {
+        if self.held != Some(frame) {
+            let source = self.evaluate(frame, frame.window)?;
+            self.field.draw(&self.runner, source, frame.window.width, frame.window.height)?;
+            self.held = Some(frame);
+        }
+        Ok(())
+    }
+
+    /// Readies the field of a whole frame: the one that is held, or the evaluator.
+    pub(super) fn whole(&mut self, frame: Frame) -> Result<Source> {
+        if self.held != Some(frame) {
+            return self.evaluate(frame, frame.window);
+        }
+        self.field.bind();
+        Ok(Source::HELD)
+    }
+
     /// Draws the glare alone and leaves it on the device in the picture's place. Does not wait for it.
     ///
     /// # Errors
     /// [`crate::Error::Gl`] where the driver refuses, or where there is no scene.
     pub fn draw_glare(&mut self, frame: Frame, settings: &Settings) -> Result<()> {
         let uniforms = self.start(frame, settings)?;
-        let source = self.evaluate(frame, frame.window)?;
+        let source = self.whole(frame)?;
         let size = [frame.window.width, frame.window.height];
         self.composite.draw_glare(&self.runner, convert::variant(source, settings), &uniforms, size)?;
         Ok(())
@@ -62,7 +86,11 @@ impl Renderer {
         // The shader counts from the screen's corner.
         let corner = DVec2::new(f64::from(region.x), f64::from(region.y));
         let uniforms = Uniforms {
-            gamut: view.gamut.to_cols_array_2d().map(|[r, g, b]| [r as f32, g as f32, b as f32, 0.0]),
+            gamut: view
+                .gamut
+                .unwrap_or(DMat3::IDENTITY)
+                .to_cols_array_2d()
+                .map(|[r, g, b]| [r as f32, g as f32, b as f32, 0.0]),
             origin: (view.origin - view.pitch * corner).as_vec2().to_array(),
             pitch: view.pitch as f32,
             rows: 0.0,
@@ -71,7 +99,12 @@ impl Renderer {
             wipe: (view.wipe + corner.x) as f32,
             pad: [0.0; 3],
         };
-        self.view.draw(&self.runner, [photo, picture], tone_map, &uniforms, screen, region)
+        let mut defines = vec![("TONE_MAP", tone_map)];
+        if view.gamut.is_some() {
+            // Not by the identity, which would spread what is not finite from one colour to all.
+            defines.push(("GAMUT", "1"));
+        }
+        self.view.draw(&self.runner, [photo, picture], &defines, &uniforms, screen, region)
     }
 
     /// A pixel of the photo and of what was drawn last, linear; none where it is not on the device.

@@ -7,7 +7,7 @@ use egui::{DragValue, Label, Response, Sense, Slider, Ui};
 
 /// Where [`App::control`](super::App::control) finds a control's slider.
 pub fn place(name: &str) -> egui::Id {
-    egui::Id::new(("control", name))
+    egui::Id::unique(("control", name))
 }
 
 /// A number that can be set.

@@ -30,8 +30,8 @@ pub struct Document {
     pub pixels: Vec<[f32; 4]>,
     /// The side of the square of the file's pixels whose mean is one of `pixels`.
     pub shrunk: u32,
-    /// From its primaries to Rec.709's.
-    pub gamut: DMat3,
+    /// From its primaries to Rec.709's, where they differ.
+    pub gamut: Option<DMat3>,
     /// What is set.
     pub look: Look,
     /// What was set when it was opened.
@@ -56,7 +56,7 @@ impl Document {
         let weights = photo.luminance_weights();
         let found = scene::find(&photo.pixels, &photo.frame, weights, &FindOptions::default());
         let look = Look::new(&found.lights, lens, Settings { luminance: weights, ..Settings::default() });
-        let gamut = photo.to_rec709().unwrap_or(DMat3::IDENTITY);
+        let gamut = photo.to_rec709();
         let size = [photo.width(), photo.height()];
         let shrunk = side(photo.frame.window, LIVE_PIXELS);
         let (frame, pixels) = shrink(photo, shrunk);

@@ -96,6 +96,10 @@ impl Stage {
             return Ok(());
         }
         let started = Instant::now();
+        if self.made.picture.is_some() {
+            // The settings change while the field stays: they may well change again.
+            self.renderer.hold_field(document.frame)?;
+        }
         match shows {
             Shows::Glare => self.renderer.draw_glare(document.frame, &document.look.settings)?,
             Shows::Picture | Shows::Photo => self.renderer.draw(document.frame, &document.look.settings)?,

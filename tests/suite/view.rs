@@ -1,13 +1,13 @@
 //! The view on the screen: the CPU's tone maps, rows from the top, means of what is made smaller, the wipe.
 
-use glam::{DMat3, DVec2};
+use glam::DVec2;
 use vglare::frame::Frame;
 use vglare::gpu::{Region, Screen};
 use vglare::photo::ToneMap;
 use vglare::plan::{Request, plan};
 use vglare::renderer::{Renderer, Settings, View};
 
-use crate::support::{on_each_backend, scenes};
+use crate::support::{bits, on_each_backend, scenes};
 
 const SURROUND: [f32; 3] = [0.2, 0.4, 0.6];
 
@@ -17,7 +17,7 @@ fn view() -> View {
         pitch: 1.0,
         exposure: 0.0,
         tone_map: ToneMap::None,
-        gamut: DMat3::IDENTITY,
+        gamut: None,
         wipe: 0.0,
         surround: SURROUND,
     }
@@ -136,5 +136,31 @@ fn the_wipe_parts_photo_and_picture() {
         }
         assert!(renderer.pixel(8, 4).is_some_and(|[photo, picture]| photo[0] == 0.1 && picture[0] > 0.5));
         assert_eq!(renderer.pixel(16, 4), None);
+    });
+}
+
+#[test]
+fn a_held_field_gives_the_same_picture() {
+    let frame = Frame::full(33, 21);
+    let photo = vec![[0.1, 0.2, 0.3, 0.5]; 33 * 21];
+    let ghosts = [scenes::one([0.3, -0.2], 0.4, [0.5, 0.25, 1.0])];
+    let other = [scenes::one([-0.3, 0.2], 0.2, [0.1, 0.9, 0.2])];
+    let settings = Settings { strength: 1.7, ..Settings::default() };
+    on_each_backend(|_, renderer| {
+        let mut pictures = Vec::new();
+        let by = |ghosts: &[_]| plan(ghosts, &Request::new(frame, 1e-3)).unwrap();
+        renderer.load(frame, &photo).unwrap();
+        for (ghosts, hold) in [(&ghosts, false), (&ghosts, true), (&other, false)] {
+            renderer.set_scene(ghosts, &by(ghosts)).unwrap();
+            if hold {
+                renderer.hold_field(frame).unwrap();
+            }
+            renderer.draw(frame, &settings).unwrap();
+            let mut picture = photo.clone();
+            renderer.fetch(frame, &mut picture).unwrap();
+            pictures.push(picture);
+        }
+        assert_eq!(bits(&pictures[0]), bits(&pictures[1]));
+        assert_ne!(bits(&pictures[1]), bits(&pictures[2]), "another scene lets go of the field");
     });
 }

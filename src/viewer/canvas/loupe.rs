@@ -94,7 +94,7 @@ fn beside(at: Pos2, canvas: Rect) -> Option<Rect> {
 /// Place, linear light, and what the display shows of it in codes of 0 to 255.
 fn words(document: &Document, probe: &Probe, before: bool) -> String {
     let [r, g, b, _] = if before { probe.photo } else { probe.picture };
-    let light = (document.gamut.as_mat3() * glam::Vec3::new(r, g, b)).to_array();
+    let light = document.gamut.map_or([r, g, b], |gamut| (gamut.as_mat3() * glam::Vec3::new(r, g, b)).to_array());
     let gain = document.viewing.exposure.exp2() as f32;
     let map: ToneMap = document.viewing.tone_map;
     let codes = map.apply(light.map(|c| c * gain)).map(|c| (255.0 * srgb_encode(c)).round() as u8);
