@@ -23,7 +23,7 @@ impl Painter {
     /// # Errors
     /// [`Error::Gl`] where the driver refuses.
     pub fn new(device: &Rc<Device>) -> Result<Self> {
-        let painter = egui_glow::Painter::new(device.shared_gl(), "", None, true)
+        let painter = egui_glow::Painter::new(device.shared_gl(), "", None, false)
             .map_err(|error| Error::Gl(format!("the painter of the window: {error}")))?;
         Ok(Self { device: device.clone(), painter })
     }

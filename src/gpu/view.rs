@@ -27,7 +27,9 @@ pub(crate) struct View {
     pub gain: f32,
     /// Columns of the screen from this one on show the picture, those before it the photo.
     pub wipe: f32,
-    pub pad: [f32; 3],
+    /// Rows and columns of the photo from one that is looked at to the next, where it is made smaller.
+    pub stride: u32,
+    pub pad: [u32; 2],
 }
 const _: () = assert!(size_of::<View>() == 96);
 

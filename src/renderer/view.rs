@@ -83,6 +83,8 @@ impl Renderer {
             ToneMap::Aces => "2",
             ToneMap::Agx => "3",
         };
+        let (taps, stride) = taps(view.pitch);
+        let text = taps.to_string();
         // The shader counts from the screen's corner.
         let corner = DVec2::new(f64::from(region.x), f64::from(region.y));
         let uniforms = Uniforms {
@@ -97,9 +99,19 @@ impl Renderer {
             surround: view.surround,
             gain: view.exposure.exp2() as f32,
             wipe: (view.wipe + corner.x) as f32,
-            pad: [0.0; 3],
+            stride,
+            pad: [0; 2],
         };
         let mut defines = vec![("TONE_MAP", tone_map)];
+        if taps > 1 {
+            defines.push(("TAPS", &text));
+        }
+        // One of the two alone costs half the fetches.
+        let (left, right) = (view.wipe <= 0.0, view.wipe >= f64::from(region.width));
+        if !left && !right {
+            defines.push(("WIPE", "1"));
+        }
+        let picture = if right { photo } else { picture };
         if view.gamut.is_some() {
             // Not by the identity, which would spread what is not finite from one colour to all.
             defines.push(("GAMUT", "1"));
@@ -123,5 +135,31 @@ impl Renderer {
     /// Forgets the photo and the picture on the device.
     pub fn unload(&mut self) {
         self.composite.unload();
+    }
+}
+
+/// Rows that a pixel of the screen looks at, and from one of them to the next; as many columns.
+fn taps(pitch: f64) -> (u32, u32) {
+    const MOST: u32 = 12;
+    if pitch <= 1.0 {
+        return (1, 1);
+    }
+    // Beginning anywhere in a row, it reaches into one more than it is wide.
+    let touched = pitch.ceil() as u32 + 1;
+    let stride = touched.div_ceil(MOST);
+    (touched.div_ceil(stride), stride)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_row_that_is_touched_is_looked_at_up_to_twelve() {
+        for (pitch, wanted) in
+            [(0.3, (1, 1)), (1.0, (1, 1)), (1.2, (3, 1)), (11.0, (12, 1)), (11.5, (7, 2)), (64.0, (11, 6))]
+        {
+            assert_eq!(taps(pitch), wanted, "{pitch}");
+        }
     }
 }

@@ -19,5 +19,9 @@ pub fn show(ui: &mut Ui, _: &mut Document, stage: &Stage) {
             ui.label(format!("{count} times"));
             ui.end_row();
         }
+        ui.label("view");
+        ui.label("");
+        ui.label(format!("{} times", counts.views));
+        ui.end_row();
     });
 }
