@@ -40,6 +40,7 @@ const SOURCES: &[(&str, &str)] = &sources![
     "evaluators/grid.glsl",
     "evaluators/rows.glsl",
     "evaluators/series.glsl",
+    "evaluators/split.glsl",
     "field.frag",
     "fullscreen.vert",
     "graf_folded.frag",

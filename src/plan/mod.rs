@@ -14,6 +14,7 @@ mod rounding;
 mod search;
 mod series;
 mod slots;
+mod split;
 mod terms;
 mod weigh;
 
@@ -149,6 +150,16 @@ impl Plan {
         self.groups.iter().map(|group| group.members.len()).sum()
     }
 
+    /// How many of them are summed directly at every pixel: all by `direct`, a few or none beside a series.
+    pub fn summed(&self) -> usize {
+        self.summed_groups().map(|group| group.members.len()).sum()
+    }
+
+    /// The groups of those.
+    pub fn summed_groups(&self) -> impl Iterator<Item = &Group> {
+        self.groups.iter().filter(|group| group.transform == Transform::Direct)
+    }
+
     /// What it is expected to cost, in milliseconds.
     pub fn cost(&self) -> Option<f64> {
         self.costs.first().map(|cost| cost.milliseconds)
@@ -239,6 +250,12 @@ pub fn plan(ghosts: &[Ghost], asked: &Request) -> Result<Plan> {
             Err(error) => refusals.push((evaluator, error)),
         }
     }
+    if let Some(survey) = split::apart(ghosts, &survey, request) {
+        let wide = Wide::new(ghosts, &survey, request);
+        let series = wanted.iter().filter(|&&evaluator| evaluator != Evaluator::Direct);
+        // One that cannot be had was never asked for by that name.
+        candidates.extend(series.flat_map(|&evaluator| candidate(ghosts, &survey, wide.as_ref(), request, evaluator)));
+    }
     let mut costs: Vec<Cost> = candidates.iter().flat_map(|plan: &Plan| plan.costs.clone()).collect();
     costs.sort_by(|a, b| a.milliseconds.total_cmp(&b.milliseconds));
     let cheapest = candidates.into_iter().min_by(|a, b| a.costs[0].milliseconds.total_cmp(&b.costs[0].milliseconds));
@@ -310,6 +327,9 @@ struct Survey {
     weighed: Weighed,
     groups: Vec<Group>,
     reaches: Vec<Reach>,
+    /// Groups that are no part of the series, and what f32 costs their sum.
+    summed: Vec<Group>,
+    summed_rounding: f64,
 }
 
 impl Survey {
@@ -317,7 +337,7 @@ impl Survey {
         let weighed = weigh::weigh(ghosts, request);
         let groups = terms::group(ghosts, &weighed);
         let reaches = period::reaches(ghosts, &weighed, request.frame);
-        Self { weighed, groups, reaches }
+        Self { weighed, groups, reaches, summed: Vec::new(), summed_rounding: 0.0 }
     }
 }
 
@@ -333,7 +353,7 @@ fn candidate(
     let mut degree = request.degree.map_or(rounding::SEEN_DEGREE, |[n, m]| n.max(m));
     loop {
         let rounding = rounding::bound(ghosts, &survey.weighed, request.frame, evaluator, degree);
-        let plan = with_rounding(rounding, survey, wide, request, evaluator)?;
+        let plan = with_rounding(rounding + survey.summed_rounding, survey, wide, request, evaluator)?;
         let needed = plan.degree[0].max(plan.degree[1]);
         if evaluator == Evaluator::Direct || needed <= degree {
             return Ok(plan);
@@ -374,13 +394,16 @@ fn with_rounding(
         costs: Vec::new(),
         refused: Vec::new(),
     };
-    if evaluator != Evaluator::Direct {
+    if evaluator == Evaluator::Direct {
+        plan.groups.iter_mut().for_each(|group| group.transform = Transform::Direct);
+    } else {
         series::plan_series(&mut plan, survey, wide, request, usable)?;
+        plan.groups.extend_from_slice(&survey.summed);
     }
-    // `direct` takes eight ghosts a round, and a few rounds more to gather them.
+    // `direct` takes eight ghosts a round where there are many, and a few rounds more to gather them.
     let rounds = match evaluator {
         Evaluator::Direct => plan.ghosts() / 7,
-        Evaluator::Series => plan.terms + plan.counts.len(),
+        Evaluator::Series => plan.terms + plan.counts.len() + plan.summed(),
         Evaluator::Rows | Evaluator::Grid => 0,
     };
     if rounds > request.loop_rounds {

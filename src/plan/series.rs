@@ -113,7 +113,8 @@ fn excess(plan: &Plan, usable: f64) -> f64 {
     const MENDED: f64 = 0.1;
     let Prediction { dropped, periodisation, .. } = plan.predicted;
     let shares = share::DROPPED + share::PERIODISATION - share::GATHERING;
-    (dropped + periodisation - shares * usable).clamp(0.0, MENDED * usable)
+    // Nothing may be left at all, where the series is given.
+    (dropped + periodisation - shares * usable).min(MENDED * usable).max(0.0)
 }
 
 /// The plan with terms and a lattice, each within its part of the tolerance.

@@ -26,5 +26,6 @@ mod scale;
 mod scene;
 mod special;
 mod sphere;
+mod split;
 mod support;
 mod tiles;
