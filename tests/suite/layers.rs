@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 /// Modules that know nothing of GL, windows and the command line.
-const PURE: [&str; 8] = ["photo", "scene", "series", "plan", "reference", "compare", "frame", "error"];
+const PURE: [&str; 10] =
+    ["choices", "look", "photo", "scene", "series", "plan", "reference", "compare", "frame", "error"];
 const FORBIDDEN: [&str; 12] = [
     "crate::gpu",
     "crate::renderer",

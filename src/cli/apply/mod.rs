@@ -19,10 +19,12 @@ use super::accuracy::AccuracyArgs;
 use super::lights::FindArgs;
 use super::numbers::finite;
 use super::scene::SceneArgs;
+use crate::Result;
 use crate::certificate::Verify;
+use crate::look::Look;
 use crate::photo::{Depth, ToneMap};
 
-use look::{LookArgs, Mix};
+use look::LookArgs;
 
 pub use run::run;
 
@@ -98,9 +100,14 @@ Examples:
   vglare apply shot.*.exr -o 'previews/{name}.png' --keep-going --quiet";
 
 impl Args {
-    /// Whether anything is rendered at all.
-    fn renders(&self) -> bool {
-        self.look.strength != 0.0
+    /// The look that the files and options give.
+    ///
+    /// # Errors
+    /// Those of [`SceneArgs::look`].
+    pub fn look(&self) -> Result<Look> {
+        let look = self.look.over(self.scene.look()?);
+        let (find, accuracy) = (self.find.over(look.find), self.accuracy.over(look.accuracy));
+        Ok(Look { find, accuracy, ..look })
     }
 }
 
