@@ -24,6 +24,7 @@
 //! | [`chart`] | numbers → charts and pictures in false colours |
 //! | [`rex`] | the research prototype's experiments, as figures and numbers |
 //! | [`tradeoff`] | a photo and its ghosts → accuracy against time, measured here |
+//! | [`viewer`] | what the window edits: a look, its history, its command line |
 //! | [`cli`] | the commands |
 
 mod calibration;
@@ -49,5 +50,6 @@ pub mod scene;
 pub mod series;
 mod target;
 pub mod tradeoff;
+pub mod viewer;
 
 pub use error::{Error, Result};

@@ -50,7 +50,7 @@ pub enum LookLens {
     Preset(Lens),
     /// That of a lens file.
     File(PathBuf, Lens),
-    /// A table of the look's own.
+    /// A table of the look's own; never empty.
     Own(Vec<LensGhost>),
 }
 
