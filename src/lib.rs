@@ -19,7 +19,7 @@
 //! | [`renderer`] | the main path: spectrum → field → normalise → composite |
 //! | [`mod@reference`] | the definition of the field in f64, by direct sum and by direct series |
 //! | [`compare`], [`certificate`] | the one error metric, and a rendered field held against the definition |
-//! | `job`, `calibration` | a look laid over a photo, by what is known of this machine |
+//! | [`job`] | a look laid over a photo: find, plan, render, certify |
 //! | [`measure`] | arms timed in turns, and their ratios |
 //! | [`chart`] | numbers → charts and pictures in false colours |
 //! | [`rex`] | the research prototype's experiments, as figures and numbers |
@@ -37,7 +37,7 @@ pub mod compare;
 pub mod error;
 pub mod frame;
 pub mod gpu;
-mod job;
+pub mod job;
 pub mod look;
 pub mod measure;
 mod page;

@@ -1,4 +1,15 @@
 //! A look laid over a photo: find, plan, render, certify. What the command line and the window do alike.
+//!
+//! ```no_run
+//! # use std::path::Path;
+//! # use vglare::{gpu::{Backend, Device}, job::{Computer, Job, Stages, Unwatched, Wanted}, look::Look, photo};
+//! let mut computer = Computer::new(Device::open(&Backend::ALL)?);
+//! let look = Look { strength: 1.5, ..Look::default() };
+//! let mut job = Job::new(&look, photo::read(Path::new("night.exr"))?, Stages::default())?;
+//! job.compute(Some(&mut computer), Wanted::default(), &Unwatched)?;
+//! photo::write(Path::new("out.exr"), &job.photo, &photo::WriteOptions::default())?;
+//! # Ok::<(), vglare::Error>(())
+//! ```
 
 mod planned;
 mod settings;
@@ -7,7 +18,6 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::calibration::Known;
 use crate::certificate::{Certificate, Verify};
 use crate::gpu::{Device, Info, PassTime};
 use crate::look::{Gathered, Look};
@@ -15,26 +25,36 @@ use crate::photo::{self, BadPixels, Photo};
 use crate::renderer::{Pending, Renderer, Settings};
 use crate::{Error, Result};
 
+pub use crate::calibration::Known;
 pub use planned::{Planned, plan};
 pub use settings::settings;
 
 /// A photo, and what has come to be known of it on its way to a picture.
 pub struct Job<'a> {
+    /// What is laid over it.
     pub look: &'a Look,
     /// The photo; the picture, once its glare is computed.
     pub photo: Photo,
+    /// Its pixels that are no light.
     pub bad: BadPixels,
+    /// What glares in it.
     pub scene: Gathered,
     settings: Settings,
     /// The glare alone, where that is asked for.
     pub glare: Option<Vec<[f32; 4]>>,
+    /// What it was computed on; this and the next are there once it is computed.
     pub info: Option<Arc<Info>>,
+    /// How.
     pub planned: Option<Planned>,
+    /// How exactly.
     pub certificate: Option<Certificate>,
+    /// How long each pass took.
     pub passes: Vec<PassTime>,
     /// Milliseconds that spectrum, field and composite took, without upload and readback; where passes were timed.
     pub measured_ms: Option<f64>,
+    /// How long each stage took, from reading on.
     pub stages: Stages,
+    /// What a person ought to know.
     pub warnings: Vec<String>,
 }
 
@@ -49,6 +69,13 @@ pub struct Wanted {
     pub verify: Verify,
     /// Whether to plan by what `vglare calibrate` measured here; otherwise by the built-in cost model.
     pub calibrated: bool,
+}
+
+impl Default for Wanted {
+    /// The picture alone.
+    fn default() -> Self {
+        Self { glare: false, times: false, verify: Verify::Sample, calibrated: true }
+    }
 }
 
 /// Someone who watches a job, and may call it off.
@@ -66,6 +93,17 @@ pub trait Watch {
     fn cancelled(&self) -> bool {
         false
     }
+}
+
+/// No one.
+pub struct Unwatched;
+
+impl Watch for Unwatched {
+    fn step(&self, _: &'static str) {}
+
+    fn measured(&self, _: usize) {}
+
+    fn advance(&self, _: usize) {}
 }
 
 /// Stages and their milliseconds.
@@ -92,6 +130,7 @@ pub struct Computer {
 }
 
 impl Computer {
+    /// What renders on `device`, whose shaders are compiled with the first photo.
     pub fn new(device: Rc<Device>) -> Self {
         let info = Arc::new(device.info().clone());
         Self { device, info, renderer: None, warned: false }
@@ -124,12 +163,13 @@ impl<'a> Job<'a> {
         })
     }
 
-    /// Lays the glare over the photo; without a computer there is none.
+    /// Lays the glare over the photo. A look of strength 0 has none and needs no computer; without a computer there is
+    /// none either.
     ///
     /// # Errors
     /// Where there is no plan, or the driver refuses; [`Error::Cancelled`].
     pub fn compute(&mut self, computer: Option<&mut Computer>, wanted: Wanted, watch: &impl Watch) -> Result<()> {
-        if let Some(computer) = computer {
+        if let Some(computer) = computer.filter(|_| self.look.renders()) {
             return self.render(computer, wanted, watch);
         }
         let dark = || vec![[0.0, 0.0, 0.0, 1.0]; self.photo.frame.window.pixels()];

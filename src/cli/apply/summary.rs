@@ -61,7 +61,10 @@ fn about_scene(out: &mut dyn Write, scene: &Gathered) -> io::Result<()> {
             n => writeln!(out, "; {n} fainter ones left out, {:.1} % of the flux", 100.0 * found.dropped_share)?,
         }
     } else if !scene.lights.is_empty() {
-        writeln!(out, "lights   {}, as listed", scene.lights.len())?;
+        match scene.lights.iter().filter(|light| light.muted).count() {
+            0 => writeln!(out, "lights   {}, as listed", scene.lights.len())?,
+            muted => writeln!(out, "lights   {}, as listed, {muted} of them muted", scene.lights.len())?,
+        }
     } else if scene.ghosts.is_empty() {
         writeln!(out, "lights   none, so no glare")?;
     }

@@ -45,11 +45,11 @@ pub fn work(old: &Look, new: &Look) -> Work {
 mod tests {
     use glam::DVec2;
 
+    use super::super::{Accuracy, LookLens};
     use super::*;
     use crate::choices::{Evaluator, Normalize};
     use crate::scene::{FindOptions, Ghost, Goal, Light};
     use crate::series::Bell;
-    use crate::viewer::model::{Accuracy, LookLens};
 
     fn changed(from: &Look, change: impl FnOnce(&mut Look)) -> Work {
         let mut to = from.clone();

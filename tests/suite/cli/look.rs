@@ -1,6 +1,11 @@
 //! A look in a file is the same look in options, and options win.
 
 use serde_json::json;
+use vglare::gpu::{Backend, Device};
+use vglare::job::{Computer, Job, Stages, Unwatched, Wanted};
+use vglare::look::Look;
+use vglare::photo::{self, WriteOptions};
+use vglare::scene::read_scene;
 
 use super::Workplace;
 
@@ -56,6 +61,28 @@ fn a_look_file_needs_no_options() {
     assert_eq!((&report["normalize"], &report["mix"]), (&json!("minmax"), &json!("add")));
     assert_eq!((&report["scene"]["axis"], &report["scene"]["lens"]), (&json!([-0.2, 0.1]), &json!("zoom")));
     assert_eq!((&report["scene"]["threshold"], &report["error"]["asked"]), (&json!(50.0), &json!(0.01)));
+}
+
+#[test]
+fn a_look_gives_the_same_bytes_without_a_command_line() {
+    let place = Workplace::new();
+    let photo = place.photo("in.exr");
+    let device = Device::open(&Backend::ALL).unwrap_or_else(|error| panic!("this test needs GL: {error}"));
+    let mut computer = Computer::new(device);
+    for text in [
+        "preset = \"zoom\"\n[look]\nsize = 0.7\nmix = \"energy\"\n",
+        &format!("{SCENE}muted = true\n[look]\nnormalize = \"minmax\"\n[accuracy]\nevaluator = \"direct\"\n"),
+        "[look]\nstrength = 0\n",
+    ] {
+        let look = Look::from_scene(read_scene(&place.text("look.toml", text)).unwrap()).unwrap();
+        let mut job = Job::new(&look, photo::read(&photo).unwrap(), Stages::default()).unwrap();
+        let wanted = Wanted { calibrated: false, ..Wanted::default() };
+        job.compute(Some(&mut computer), wanted, &Unwatched).unwrap();
+        let path = place.path("job.exr");
+        photo::write(&path, &job.photo, &WriteOptions { overwrite: true, ..WriteOptions::default() }).unwrap();
+        assert!(std::fs::read(path).unwrap() == place.applied(&["--scene", "look.toml"]), "{text}");
+        assert_eq!(job.certificate.is_some(), look.strength != 0.0);
+    }
 }
 
 #[test]
@@ -120,12 +147,12 @@ fn plans_follow_the_look_too() {
     place.photo("in.exr");
     place.text(
         "look.toml",
-        "preset = \"zoom\"\n[look]\nsize = 0.1\n[accuracy]\ntolerance = 0.1\n[find]\nmax_lights = 1\n",
+        "preset = \"zoom\"\n[look]\nsize = 0.1\n[find]\nmax_lights = 1\n[accuracy]\ntolerance = 0.1\nevaluator = \"grid\"\n",
     );
     let plan = place.json(&["plan", "in.exr", "--scene", "look.toml", "--json"]);
     assert_eq!((&plan["lights"], &plan["plan"]["tolerance"]), (&json!(1), &json!(0.1)));
-    let again =
-        place.json(&["plan", "in.exr", "--preset", "zoom", "--tolerance", "0.1", "--max-lights", "1", "--json"]);
+    let full = "plan in.exr --preset zoom --tolerance 0.1 --max-lights 1 --evaluator grid --json";
+    let again = place.json(&full.split(' ').collect::<Vec<_>>());
     assert_eq!(plan["ghosts"], again["ghosts"]);
     assert_ne!(plan["plan"]["period"], again["plan"]["period"], "a tenth of the size has a smaller reach");
 }
