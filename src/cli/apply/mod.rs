@@ -289,6 +289,30 @@ mod tests {
     }
 
     #[test]
+    fn the_help_names_the_defaults_that_a_look_has() {
+        use clap::CommandFactory as _;
+        let (look, command) = (Look::default(), Cli::command());
+        let Goal::Tolerance(tolerance) = look.accuracy.goal else { panic!("the default is a tolerance") };
+        let defaults = [
+            ("preset", look.lens().name),
+            ("axis", format!("{},{}", look.axis.x, look.axis.y)),
+            ("merge", look.find.merge.to_string()),
+            ("max_lights", look.find.max_lights.to_string()),
+            ("strength", look.strength.to_string()),
+            ("size", look.size.to_string()),
+            ("tint", look.tint.map(|part| part.to_string()).join(",")),
+            ("mix", format!("{:?}", look.mix).to_lowercase()),
+            ("normalize", format!("{:?}", look.normalize).to_lowercase()),
+            ("tolerance", tolerance.to_string()),
+        ];
+        for (name, default) in defaults {
+            let option = command.get_arguments().find(|option| option.get_id() == name).expect(name);
+            let help = option.get_long_help().or(option.get_help()).expect(name).to_string();
+            assert!(help.contains(&format!("[default: {default}]")), "{name}: {help}");
+        }
+    }
+
+    #[test]
     fn options_win_over_the_file() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("look.toml");
