@@ -28,10 +28,10 @@ impl Lens {
 
 /// The ghosts of all lights that are not muted, light by light in the lens's order.
 ///
-/// A lens ghost with `along` = a shows the light at axis + a (position − axis), |a| times as large and blurred by the ghost's
-/// own bell. Of a Gaussian bell and a light of rms size s that is a Gaussian of variance σ² + (a s)² along each axis;
-/// another bell is made larger until its variance is that. The flux is the light's times share times tint, whatever the
-/// sizes.
+/// A lens ghost with `along` = a shows the light at axis + a (position − axis), |a| times as large and blurred by the
+/// ghost's own bell. Of a Gaussian bell and a light of rms size s that is a Gaussian of variance σ² + (a s)² along each
+/// axis; another bell is made larger until its variance is that. The flux is the light's times share times tint, whatever
+/// the sizes.
 pub fn ghosts(lights: &[Light], lens: &Lens, axis: DVec2) -> Vec<Ghost> {
     let shining = lights.iter().filter(|light| !light.muted);
     shining.flat_map(|light| lens.ghosts.iter().map(move |ghost| ghost.of(light, axis))).collect()
