@@ -38,7 +38,9 @@ use crate::{Error, Result};
 use exchange::Exchange;
 pub use exchange::Pending;
 pub use graf::{GrafRenderer, GrafScene};
-pub use settings::{Normalize, Settings};
+pub use settings::Settings;
+
+pub use crate::choices::Normalize;
 
 /// Holds the scene on the device, and renders pictures with it.
 pub struct Renderer {

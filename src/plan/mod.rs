@@ -25,6 +25,7 @@ use crate::frame::Frame;
 use crate::scene::Ghost;
 use crate::{Error, Result};
 
+pub use crate::choices::Evaluator;
 pub use cost::{Cost, CostModel, GRID_PASSES};
 pub use gather::Transform;
 pub use lattice::{Lattice, MOST_NODES};
@@ -37,36 +38,6 @@ use weigh::Weighed;
 
 /// Highest harmonic that a plan may use along one axis.
 pub const HIGHEST_DEGREE: u32 = 4096;
-
-/// How the field is computed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, clap::ValueEnum)]
-#[serde(rename_all = "lowercase")]
-pub enum Evaluator {
-    /// Sum the bells at every pixel.
-    Direct,
-    /// Sum every kept term of the series at every pixel.
-    Series,
-    /// Sum over the harmonics in y once for each row, then over those in x at every pixel.
-    Rows,
-    /// Evaluate the series on the coarse lattice that its band limit allows, then interpolate.
-    Grid,
-}
-
-impl Evaluator {
-    /// Every evaluator.
-    pub const ALL: [Self; 4] = [Self::Direct, Self::Series, Self::Rows, Self::Grid];
-}
-
-impl std::fmt::Display for Evaluator {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Direct => "direct",
-            Self::Series => "series",
-            Self::Rows => "rows",
-            Self::Grid => "grid",
-        })
-    }
-}
 
 /// What is asked of the plan.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,7 +2,8 @@
 
 use glam::DVec2;
 
-use super::settings::{Normalize, Settings};
+use super::settings::Settings;
+use crate::choices::Normalize;
 use crate::gpu::composite::{Composite, Variant};
 use crate::gpu::field::Source;
 use crate::gpu::layout::{DirectGhost, SpectralGhost};

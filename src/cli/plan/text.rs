@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::cli::accuracy::Planned;
+use crate::job::Planned;
 use crate::plan::{Evaluator, Group, Plan, Transform};
 use crate::series::moments::Cells;
 

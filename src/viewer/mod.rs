@@ -1,0 +1,3 @@
+//! The window, and the model behind it.
+
+pub mod model;
