@@ -159,14 +159,21 @@ pub struct Prediction {
     pub interpolation: f64,
     /// Moments of cells that are left out.
     pub gathering: f64,
-    /// f32: phases, tables, sums.
+    /// f32 while it computes: phases, products, sums.
     pub rounding: f64,
+    /// f32 as the format in which passes leave their results to each other: spectrum, tables, lattice.
+    pub storage: f64,
 }
 
 impl Prediction {
     /// All of it.
     pub fn total(&self) -> f64 {
-        self.dropped + self.periodisation + self.truncation + self.interpolation + self.gathering + self.rounding
+        self.dropped + self.periodisation + self.truncation + self.interpolation + self.gathering + self.single()
+    }
+
+    /// What single precision costs in all.
+    pub fn single(&self) -> f64 {
+        self.rounding + self.storage
     }
 }
 
@@ -349,6 +356,7 @@ fn with_rounding(
     if usable < 0.25 * request.tolerance && !given {
         return Err(Error::ToleranceBelowFloor { asked: request.tolerance, floor: rounding / 0.75 });
     }
+    let storage = rounding::stored(weighed, evaluator).min(rounding);
     let mut plan = Plan {
         tolerance: request.tolerance,
         evaluator,
@@ -361,7 +369,12 @@ fn with_rounding(
         scale: weighed.scale,
         peaks: weighed.peaks.clone(),
         dropped: weighed.dropped,
-        predicted: Prediction { dropped: weighed.dropped_error, rounding, ..Prediction::default() },
+        predicted: Prediction {
+            dropped: weighed.dropped_error,
+            rounding: rounding - storage,
+            storage,
+            ..Prediction::default()
+        },
         costs: Vec::new(),
         refused: Vec::new(),
     };

@@ -93,7 +93,7 @@ fn groups_hold_every_kept_ghost_once_and_sizes_within_half_an_octave() {
 fn the_direct_sum_knows_how_far_f32_shifts_a_small_bell() {
     let request = |ghosts: &[Ghost]| {
         let request = Request { evaluator: Some(Evaluator::Direct), ..Request::new(Frame::full(65, 37), 0.5) };
-        plan(ghosts, &request).unwrap().predicted.rounding
+        plan(ghosts, &request).unwrap().predicted.single()
     };
     let frame = Frame::full(65, 37);
     let pixel = frame.position(60.0, 3.0).to_array();

@@ -130,7 +130,7 @@ pub(super) fn uniforms(plan: &Plan, settings: &Settings) -> Composite {
         light_gain: rgb(settings.light_gain, 1.0),
         luminance: rgb(settings.luminance, settings.threshold),
         strength: settings.strength as f32,
-        flat: (2.0 * plan.predicted.rounding * plan.scale.iter().fold(0.0, |a: f64, &b| a.max(b))) as f32,
+        flat: (2.0 * plan.predicted.single() * plan.scale.iter().fold(0.0, |a: f64, &b| a.max(b))) as f32,
         pad: [0.0; 2],
     }
 }

@@ -75,6 +75,7 @@ fn errors(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
         ("", "from interpolation", error.interpolation),
         ("", "from moments left out (gathering)", error.gathering),
         ("", "from rounding", error.rounding),
+        ("", "from keeping results as 32-bit floats (storage)", error.storage),
         ("", "in all (total)", error.total()),
     ] {
         writeln!(out, "{label:<9}at most {value:.1e} {source}")?;
