@@ -73,6 +73,10 @@ pub enum Error {
     #[error("the chart cannot be drawn: {0}")]
     Chart(String),
 
+    /// Someone who watched called it off.
+    #[error("cancelled")]
+    Cancelled,
+
     /// Options that do not go together.
     #[error("{0}")]
     Usage(String),

@@ -8,15 +8,18 @@
 //!
 //! | module | from → to |
 //! | --- | --- |
+//! | [`choices`] | what a person chooses by name |
 //! | [`photo`] | a file → linear light, RGBA f32, and back |
 //! | [`frame`] | pixels ↔ the picture plane |
 //! | [`scene`] | photo → lights → ghosts; presets and scene files |
+//! | [`look`] | everything that a person sets: from options, from a scene file, or by hand |
 //! | [`series`] | bells, their Fourier coefficients and their tails, in f64 |
 //! | [`plan`] | ghosts, picture, tolerance → period, degree, kept terms, evaluator, predicted error |
 //! | [`gpu`] | the plan's tables and passes on OpenGL 4.3; the only folder with `unsafe` |
 //! | [`renderer`] | the main path: spectrum → field → normalise → composite |
 //! | [`mod@reference`] | the definition of the field in f64, by direct sum and by direct series |
 //! | [`compare`], [`certificate`] | the one error metric, and a rendered field held against the definition |
+//! | [`job`] | a look laid over a photo: find, plan, render, certify |
 //! | [`measure`] | arms timed in turns, and their ratios |
 //! | [`chart`] | numbers → charts and pictures in false colours |
 //! | [`rex`] | the research prototype's experiments, as figures and numbers |
@@ -24,14 +27,18 @@
 //! | [`viewer`] | the window: a photo with its glare, live |
 //! | [`cli`] | the commands |
 
+mod calibration;
 pub mod certificate;
 mod chance;
 pub mod chart;
+pub mod choices;
 pub mod cli;
 pub mod compare;
 pub mod error;
 pub mod frame;
 pub mod gpu;
+pub mod job;
+pub mod look;
 pub mod measure;
 mod page;
 pub mod photo;

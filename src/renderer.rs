@@ -33,15 +33,17 @@ use crate::gpu::runner::Runner;
 use crate::gpu::spectrum::{Coefficients, Ghosts, Spectrum, SpectrumGroup};
 use crate::gpu::view::ViewPass;
 use crate::gpu::{Device, PassTime};
-use crate::plan::{Evaluator, Plan, Transform};
+use crate::plan::{Evaluator, Group, Plan, Transform};
 use crate::scene::Ghost;
 use crate::{Error, Result};
 
 use exchange::Exchange;
 pub use exchange::Pending;
 pub use graf::{GrafRenderer, GrafScene};
-pub use settings::{Normalize, Settings};
+pub use settings::Settings;
 pub use view::View;
+
+pub use crate::choices::Normalize;
 
 /// Holds the scene on the device, and renders pictures with it.
 pub struct Renderer {
@@ -96,10 +98,11 @@ impl Renderer {
             return Ok(());
         }
         self.forget_scene();
-        if plan.evaluator == Evaluator::Direct {
+        if plan.evaluator == Evaluator::Direct || plan.summed() > 0 {
             let (direct, shapes) = convert::direct_ghosts(ghosts, plan);
             self.evaluators.set_ghosts(&self.runner, &direct, &shapes)?;
-        } else {
+        }
+        if plan.evaluator != Evaluator::Direct {
             self.compute_spectrum(ghosts, plan)?;
         }
         self.runner.device().check("computing the spectrum")?;
@@ -108,26 +111,27 @@ impl Renderer {
     }
 
     fn compute_spectrum(&mut self, ghosts: &[Ghost], plan: &Plan) -> Result<()> {
+        let parts: Vec<&Group> = plan.groups.iter().filter(|group| group.transform != Transform::Direct).collect();
         let (mut spectral, mut sums) = (Vec::new(), Vec::new());
-        for group in &plan.groups {
+        for group in &parts {
             let (each, summed) = match &group.transform {
-                Transform::Dispatch => (convert::spectral_ghosts(ghosts, plan, &group.members), Vec::new()),
                 Transform::Gather(cells) => {
                     (Vec::new(), self.runner.run("moments", || convert::gathered(ghosts, plan, group, cells)))
                 }
+                _ => (convert::spectral_ghosts(ghosts, plan, &group.members), Vec::new()),
             };
             spectral.push(each);
             sums.push(summed);
         }
-        let tables: Vec<_> = plan.groups.iter().map(|group| convert::table(plan, group)).collect();
-        let groups = plan.groups.iter().enumerate().map(|(k, group)| SpectrumGroup {
+        let tables: Vec<_> = parts.iter().map(|group| convert::table(plan, group)).collect();
+        let groups = parts.iter().enumerate().map(|(k, group)| SpectrumGroup {
             coefficients: match &tables[k] {
                 Some(table) => Coefficients::Table(table),
                 None => Coefficients::Factors(group.bell.shape().shader()),
             },
             ghosts: match group.transform {
-                Transform::Dispatch => Ghosts::Each(&spectral[k]),
                 Transform::Gather(_) => Ghosts::Sums(&sums[k]),
+                _ => Ghosts::Each(&spectral[k]),
             },
             degree: group.degree,
         });
@@ -333,10 +337,7 @@ impl Renderer {
         let limits = &self.runner.device().info().limits;
         let side = limits.texture_size.min(limits.viewport[0]).min(limits.viewport[1]);
         // Drivers reset themselves when one draw takes seconds, and `direct` can make that of a tile of any size.
-        let bells = match &self.scene {
-            Some((_, plan)) if plan.evaluator == Evaluator::Direct => plan.ghosts().max(1),
-            _ => 1,
-        };
+        let bells = self.scene.as_ref().map_or(0, |(_, plan)| plan.summed()).max(1);
         tiles::split(window, side, self.tile_pixels.min((tiles::BELLS / bells).max(1)))
     }
 
@@ -368,10 +369,11 @@ impl Renderer {
     fn evaluate(&mut self, frame: Frame, tile: Window) -> Result<Source> {
         let Some((_, plan)) = &self.scene else { return Err(Error::Gl("the renderer has no scene".into())) };
         let (runner, spectrum, evaluators) = (&self.runner, &self.spectrum, &mut self.evaluators);
+        if plan.evaluator == Evaluator::Direct || plan.summed() > 0 {
+            evaluators.direct([tile.x, tile.y], [frame.width as i32, frame.height as i32])?;
+        }
         match plan.evaluator {
-            Evaluator::Direct => {
-                evaluators.direct([tile.x, tile.y], [frame.width as i32, frame.height as i32])?;
-            }
+            Evaluator::Direct => {}
             Evaluator::Series | Evaluator::Rows => {
                 let columns = tiles::phases(tile.width, |i| frame.x(f64::from(tile.x) + i), plan.period.x);
                 let rows = tiles::phases(tile.height, |j| frame.y(f64::from(tile.y) + j), plan.period.y);

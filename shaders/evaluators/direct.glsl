@@ -1,7 +1,6 @@
 // `direct`: the bells themselves, summed at every pixel (rex's non-parametric case). The cost of a pixel grows with K.
 #include BELL
 
-
 struct Ghost {
     vec2 center;
     vec2 inverse_size;
@@ -23,7 +22,7 @@ layout(std140, binding = BINDING_FEW_GHOSTS) uniform Ghosts {
 };
 const uint STEP = 1u;
 #endif
-layout(std140, binding = BINDING_EVALUATOR) uniform Direct {
+layout(std140, binding = BINDING_DIRECT) uniform Direct {
     ivec2 corner;   // of the tile, in pixels of the picture
     ivec2 size;     // of the picture, in pixels
     uint ghost_count; // a multiple of STEP; the last ones may have no weight

@@ -1,30 +1,28 @@
-//! How exact the glare is to be and how it is computed: the options, and the plan that they ask for.
-
-use std::path::PathBuf;
+//! How exact the glare is to be and how it is computed.
 
 use glam::DVec2;
 
 use super::BackendChoice;
-use super::calibration::{self, CalibrationArgs};
-use super::numbers::finite;
-use super::scene::Gathered;
-use crate::Result;
-use crate::frame::Frame;
+use super::numbers::{finite, positive};
+use crate::calibration::Known;
+use crate::choices::Evaluator;
 use crate::gpu::Info;
-use crate::plan::{self, CostModel, Evaluator, Plan, Request};
+use crate::look::Accuracy;
+use crate::plan;
+use crate::scene::Goal;
 
 /// How exact the glare is, and how it is computed.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Accuracy")]
 pub struct AccuracyArgs {
-    /// Largest error at any pixel, relative to the largest glare of the same colour
-    #[arg(long, value_name = "E", default_value_t = 1e-3, value_parser = tolerance)]
-    tolerance: f64,
+    /// Largest error at any pixel, relative to the largest glare of the same colour [default: 0.001]
+    #[arg(long, value_name = "E", value_parser = tolerance)]
+    tolerance: Option<f64>,
 
     /// Be as exact as this many milliseconds allow, by the cost model, instead of to a tolerance: for the spectrum and
     /// the field, without reading, compiling and writing. `vglare calibrate` fits the cost model to this machine
     #[arg(long, value_name = "MILLISECONDS", conflicts_with = "tolerance", value_parser = budget)]
-    pub budget: Option<f64>,
+    budget: Option<f64>,
 
     /// Where 32-bit floats cannot be as exact as asked, be as exact as they can, instead of failing
     #[arg(long)]
@@ -50,56 +48,45 @@ pub struct AccuracyArgs {
     calibration: CalibrationArgs,
 }
 
-/// A plan, and what it rests on.
-pub struct Planned {
-    pub plan: Plan,
-    /// The cost model that decided.
-    pub model: CostModel,
-    /// The file that the cost model is from; none for the built-in one.
-    pub calibration: Option<PathBuf>,
-    /// What a person ought to know: of a tolerance that was raised to the floor.
-    pub notes: Vec<String>,
-    /// What went wrong without keeping the plan from being made.
-    pub warnings: Vec<String>,
+/// Whether what was measured of this machine is used.
+#[derive(Debug, Clone, Copy, clap::Args)]
+pub struct CalibrationArgs {
+    /// Plan by the built-in cost model, whatever `vglare calibrate` measured here: the same plan on any machine
+    #[arg(long)]
+    pub no_calibration: bool,
+}
+
+impl CalibrationArgs {
+    /// The cost model for a device.
+    pub fn known(self, device: Option<&Info>) -> Known {
+        match device {
+            Some(device) if !self.no_calibration => Known::of(device),
+            _ => Known::default(),
+        }
+    }
 }
 
 impl AccuracyArgs {
-    /// The plan for the scene's ghosts on a device, or, without one, on a device without limits.
-    ///
-    /// # Errors
-    /// Those of [`plan::plan`], [`plan::plan_at_least`] and [`plan::plan_within`].
-    pub fn plan(&self, scene: &Gathered, frame: Frame, device: Option<&Info>) -> Result<Planned> {
-        let known = self.calibration.known(device);
-        let unlimited = Request::new(frame, self.tolerance);
-        let request = Request {
-            period: self.period.or(scene.period),
-            degree: self.degree.map(|degree| degree.0).or(scene.degree),
-            evaluator: self.evaluator,
-            loop_rounds: device.and_then(Info::loop_rounds).unwrap_or(usize::MAX),
-            // A term takes three vec4.
-            most_terms: device.map_or(unlimited.most_terms, |info| (info.limits.storage_block / 48) as usize),
-            cost_model: known.model,
-            ..unlimited
-        };
-        let plan = match self.budget {
-            Some(budget) => plan::plan_within(&scene.ghosts, &request, budget)?,
-            None if self.allow_floor => plan::plan_at_least(&scene.ghosts, &request)?,
-            None => plan::plan(&scene.ghosts, &request)?,
-        };
-        let raised = self.budget.is_none() && plan.tolerance > self.tolerance;
-        let note = raised.then(|| {
-            let (asked, floor) = (self.tolerance, plan.tolerance);
-            let by = plan.evaluator;
-            format!("the tolerance is {floor:.1e} instead of {asked:.1e}: what 32-bit floats can give here, by {by}")
-        });
-        let calibration::Known { model, file, warning } = known;
-        Ok(Planned {
-            plan,
-            model,
-            calibration: file,
-            notes: note.into_iter().collect(),
-            warnings: warning.into_iter().collect(),
-        })
+    /// What is given wins over what was set before.
+    pub fn over(&self, set: Accuracy) -> Accuracy {
+        let tolerance = self.tolerance.map(Goal::Tolerance);
+        Accuracy {
+            goal: self.budget.map(Goal::Budget).or(tolerance).unwrap_or(set.goal),
+            allow_floor: self.allow_floor || set.allow_floor,
+            degree: self.degree.map(|degree| degree.0).or(set.degree),
+            period: self.period.or(set.period),
+            evaluator: self.evaluator.or(set.evaluator),
+        }
+    }
+
+    /// Whether what was measured of this machine is used.
+    pub fn calibrated(&self) -> bool {
+        !self.calibration.no_calibration
+    }
+
+    /// The cost model for a device.
+    pub fn known(&self, device: Option<&Info>) -> Known {
+        self.calibration.known(device)
     }
 }
 
@@ -127,7 +114,7 @@ fn degree(text: &str) -> Result<Degree, String> {
 }
 
 fn period(text: &str) -> Result<DVec2, String> {
-    let one = |text: &str| finite(text).ok().filter(|&t| t > 0.0);
+    let one = |text: &str| positive(text).ok();
     pair(text)
         .and_then(|(x, y)| Some(DVec2::new(one(x)?, one(y)?)))
         .ok_or_else(|| "expected two positive numbers, like 4.5,3".to_owned())

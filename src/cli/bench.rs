@@ -13,7 +13,7 @@ mod stage;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use super::calibration::CalibrationArgs;
+use super::accuracy::CalibrationArgs;
 use super::{BackendChoice, stdout};
 use crate::gpu::Device;
 use crate::measure::Rounds;

@@ -49,17 +49,23 @@ pub struct FindArgs {
     threshold: Option<f64>,
 
     /// Regions that are this close to a brighter one join it, in half picture heights; 0 merges none
-    #[arg(long, value_name = "R", default_value_t = FindOptions::default().merge, value_parser = not_negative)]
-    merge: f64,
+    /// [default: 0.02]
+    #[arg(long, value_name = "R", value_parser = not_negative)]
+    merge: Option<f64>,
 
-    /// At most so many lights, the brightest
-    #[arg(long, value_name = "N", default_value_t = FindOptions::default().max_lights)]
-    max_lights: usize,
+    /// At most so many lights, the brightest [default: 64]
+    #[arg(long, value_name = "N")]
+    max_lights: Option<usize>,
 }
 
-impl From<&FindArgs> for FindOptions {
-    fn from(&FindArgs { threshold, merge, max_lights }: &FindArgs) -> Self {
-        Self { threshold, merge, max_lights }
+impl FindArgs {
+    /// What is given wins over what was set before.
+    pub fn over(&self, set: FindOptions) -> FindOptions {
+        FindOptions {
+            threshold: self.threshold.or(set.threshold),
+            merge: self.merge.unwrap_or(set.merge),
+            max_lights: self.max_lights.unwrap_or(set.max_lights),
+        }
     }
 }
 
@@ -70,7 +76,7 @@ impl From<&FindArgs> for FindOptions {
 /// Where the photo cannot be read or standard output cannot be written.
 pub fn run(args: &Args) -> Result<()> {
     let photo = photo::read(&args.photo)?;
-    let found = find(&photo.pixels, &photo.frame, photo.luminance_weights(), &(&args.find).into());
+    let found = find(&photo.pixels, &photo.frame, photo.luminance_weights(), &args.find.over(FindOptions::default()));
     stdout::print(|out| if args.json { json(out, &found) } else { table(out, &found, &photo.frame) })
 }
 
@@ -198,7 +204,7 @@ mod tests {
 
     #[test]
     fn options_are_those_given_or_the_librarys() {
-        let options = |args: &[&str]| FindOptions::from(&parsed(args).unwrap().find);
+        let options = |args: &[&str]| parsed(args).unwrap().find.over(FindOptions::default());
         assert_eq!(options(&["a.exr"]), FindOptions::default());
         let given = options(&["a.exr", "--threshold", "2.5", "--merge", "0", "--max-lights", "7"]);
         assert_eq!(given, FindOptions { threshold: Some(2.5), merge: 0.0, max_lights: 7 });

@@ -4,7 +4,6 @@ mod accuracy;
 mod apply;
 mod bench;
 mod calibrate;
-mod calibration;
 mod harmonics;
 mod info;
 mod lights;

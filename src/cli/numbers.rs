@@ -1,8 +1,29 @@
 //! Numbers on the command line.
 
+use glam::DVec2;
+
 /// A number that is neither NaN nor infinite.
 pub fn finite(text: &str) -> Result<f64, String> {
     text.parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(|| "expected a finite number".to_owned())
+}
+
+/// A finite number above 0.
+pub fn positive(text: &str) -> Result<f64, String> {
+    finite(text).ok().filter(|&x| x > 0.0).ok_or_else(|| "expected a positive finite number".to_owned())
+}
+
+/// Two finite numbers, x and y.
+pub fn point(text: &str) -> Result<DVec2, String> {
+    let point =
+        text.split_once(',').and_then(|(x, y)| Some(DVec2::new(finite(x.trim()).ok()?, finite(y.trim()).ok()?)));
+    point.ok_or_else(|| "expected two finite numbers, like 0.5,-0.2".to_owned())
+}
+
+/// Three numbers from 0 on: R, G and B.
+pub fn colour(text: &str) -> Result<[f64; 3], String> {
+    let parts: Result<Vec<f64>, String> = text.split(',').map(|part| not_negative(part.trim())).collect();
+    let colour = parts.ok().and_then(|parts| parts.try_into().ok());
+    colour.ok_or_else(|| "expected three finite numbers that are not negative, like 1,0.9,0.7".to_owned())
 }
 
 /// A number from 0 on, not infinite.

@@ -5,6 +5,8 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use crate::job::Watch;
+
 const PATIENCE: Duration = Duration::from_secs(1);
 /// Steps of a bar.
 const PARTS: f64 = 1000.0;
@@ -72,6 +74,20 @@ impl Progress {
         }
         self.bar.set_position((done * PARTS) as u64);
         self.bar.set_message(what);
+    }
+}
+
+impl Watch for Progress {
+    fn step(&self, what: &'static str) {
+        self.step(what);
+    }
+
+    fn measured(&self, pixels: usize) {
+        self.measured(pixels);
+    }
+
+    fn advance(&self, pixels: usize) {
+        self.advance(pixels);
     }
 }
 

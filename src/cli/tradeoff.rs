@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use comfy_table::{CellAlignment, Table, presets};
 
-use super::calibration::CalibrationArgs;
+use super::accuracy::CalibrationArgs;
 use super::lights::FindArgs;
 use super::progress::Progress;
-use super::scene::{Files, SceneArgs};
+use super::scene::SceneArgs;
 use super::{BackendChoice, stdout};
 use crate::gpu::Device;
 use crate::tradeoff::{self, Results, Subject, exponent, short};
@@ -71,11 +71,12 @@ A folder that an earlier run has written is written anew.";
 /// written; [`crate::Error::Usage`] where nothing glares; and those of reading the photo and the scene.
 pub fn run(args: &Args) -> Result<()> {
     let progress = Progress::start(args.quiet);
-    let files = Files::read(&args.scene)?;
+    let mut look = args.scene.look()?;
+    look.find = args.find.over(look.find);
     progress.step("reading the photo");
     let photo = photo::read(&args.photo)?;
     progress.step("finding the lights");
-    let scene = files.gather(&photo, &args.find, false);
+    let scene = look.gather(&photo);
     let name = name(&args.photo);
     let subject = Subject::new(&name, &photo, &scene.ghosts)?;
     tradeoff::check(&args.output, args.force)?;

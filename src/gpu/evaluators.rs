@@ -5,8 +5,8 @@ use bytemuck::Zeroable as _;
 
 use super::harmonics::Harmonics;
 use super::layout::{
-    CELLS, DirectGhost, EVALUATOR, FEW_GHOSTS, GHOSTS, HARMONICS_X, HARMONICS_Y, Knots, LATTICE, PROFILES, SHAPES,
-    STRIPS,
+    CELLS, DIRECT, DirectGhost, EVALUATOR, FEW_GHOSTS, GHOSTS, HARMONICS_X, HARMONICS_Y, Knots, LATTICE, PROFILES,
+    SHAPES, STRIPS,
 };
 use super::resource::{Buffer, Scratch, Texel};
 use super::runner::Runner;
@@ -87,7 +87,7 @@ impl Evaluators {
     /// Readies `direct` for a tile whose first pixel is `corner` in a picture of `size` pixels.
     pub fn direct(&mut self, corner: [i32; 2], size: [i32; 2]) -> Result<()> {
         self.direct.store(&[[corner[0], corner[1], size[0], size[1], self.ghost_count as i32, 0, 0, 0]])?;
-        self.direct.bind_uniform(EVALUATOR);
+        self.direct.bind_uniform(DIRECT);
         if self.many {
             self.ghosts.bind_storage(GHOSTS);
         } else {

@@ -10,6 +10,8 @@ use crate::Result;
 pub(crate) struct Source {
     /// Its file in `shaders/`.
     pub evaluator: &'static str,
+    /// The file of the series where the function is the sum of one and of bells.
+    pub series: Option<&'static str>,
     /// The file of the bell, or of all bells, that it includes, if any.
     pub bell: Option<&'static str>,
     /// Whether there are more ghosts than fit a uniform block.
@@ -18,11 +20,12 @@ pub(crate) struct Source {
 
 impl Source {
     /// The field that [`FieldPass::draw`] drew last, which [`FieldPass::bind`] binds.
-    pub const HELD: Self = Self { evaluator: "\"evaluators/held.glsl\"", bell: None, many_ghosts: false };
+    pub const HELD: Self = Self { evaluator: "\"evaluators/held.glsl\"", series: None, bell: None, many_ghosts: false };
 
     /// What a shader is specialised with to include this function.
     pub fn defines(self) -> Vec<(&'static str, &'static str)> {
         let mut defines = vec![("EVALUATOR", self.evaluator)];
+        defines.extend(self.series.map(|series| ("SERIES", series)));
         defines.extend(self.bell.map(|bell| ("BELL", bell)));
         if self.many_ghosts {
             defines.push(("MANY_GHOSTS", "1"));

@@ -14,7 +14,8 @@ pub(crate) const PASS: Binding = ("BINDING_PASS", 0);
 pub(crate) const EVALUATOR: Binding = ("BINDING_EVALUATOR", 1);
 pub(crate) const SAMPLES: Binding = ("BINDING_SAMPLES", 2);
 
-/// Ghosts that fit a uniform block.
+/// What `direct` has, beside an evaluator or alone: where the tile stands, and as many ghosts as fit a uniform block.
+pub(crate) const DIRECT: Binding = ("BINDING_DIRECT", 4);
 pub(crate) const FEW_GHOSTS: Binding = ("BINDING_FEW_GHOSTS", 3);
 
 /// Shader storage blocks.
@@ -55,11 +56,12 @@ pub(crate) const FOLDED: Binding = ("UNIT_FOLDED", 13);
 pub(crate) const PICTURE: Binding = ("UNIT_PICTURE", 14);
 
 /// Every binding, for the head of every shader.
-pub(crate) const BINDINGS: [Binding; 28] = [
+pub(crate) const BINDINGS: [Binding; 29] = [
     PASS,
     EVALUATOR,
     SAMPLES,
     FEW_GHOSTS,
+    DIRECT,
     GHOSTS,
     PARTIALS,
     SPECTRUM,

@@ -41,6 +41,7 @@ const SOURCES: &[(&str, &str)] = &sources![
     "evaluators/held.glsl",
     "evaluators/rows.glsl",
     "evaluators/series.glsl",
+    "evaluators/split.glsl",
     "field.frag",
     "fullscreen.vert",
     "graf_folded.frag",

@@ -84,33 +84,62 @@ impl CostModel {
 pub struct Cost {
     /// The evaluator.
     pub evaluator: Evaluator,
+    /// Ghosts that are summed directly at every pixel: all of them by `direct`, a few or none beside a series.
+    pub summed: usize,
     /// Milliseconds for spectrum and field on the machine that the cost model was measured on.
     pub milliseconds: f64,
 }
 
 /// The cost of a plan.
 pub(super) fn estimate(plan: &Plan, request: &Request) -> Cost {
+    let spectrum: f64 =
+        plan.groups.iter().map(|group| gather::cost(group, &group.transform, &request.cost_model)).sum();
+    let size = Size {
+        terms: plan.terms as f64,
+        degree: plan.degree,
+        nodes: plan.lattice.map_or([0.0; 2], |lattice| lattice.nodes.map(f64::from)),
+    };
+    let summed = plan.summed();
+    let nanoseconds = match plan.evaluator {
+        Evaluator::Direct => direct(summed, request) + request.cost_model.pass,
+        evaluator if summed > 0 => spectrum + field(evaluator, &size, request) + direct(summed, request),
+        evaluator => spectrum + field(evaluator, &size, request),
+    };
+    Cost { evaluator: plan.evaluator, summed, milliseconds: nanoseconds * 1e-6 }
+}
+
+/// What of a series its field's cost depends on.
+pub(super) struct Size {
+    pub terms: f64,
+    pub degree: [u32; 2],
+    /// Of the lattice, where there is one.
+    pub nodes: [f64; 2],
+}
+
+/// What the field of a series costs with all the passes that it takes, in nanoseconds.
+pub(super) fn field(evaluator: Evaluator, size: &Size, request: &Request) -> f64 {
     let model = request.cost_model;
     let window = request.frame.window;
     let pixels = window.pixels() as f64;
     let rows = |rows: f64, columns: f64| {
-        rows * plan.terms as f64 * model.profile + rows * columns * f64::from(plan.degree[0] + 1) * model.harmonic
+        rows * size.terms * model.profile + rows * columns * f64::from(size.degree[0] + 1) * model.harmonic
     };
-    let spectrum: f64 = plan.groups.iter().map(|group| gather::cost(group, &group.transform, &model)).sum();
-    let field = match plan.evaluator {
-        Evaluator::Direct => {
-            let bells = plan.ghosts() as f64 * slower(plan.ghosts()) + AROUND_BELLS;
-            pixels * bells * model.bell + model.pass
-        }
-        Evaluator::Series => spectrum + pixels * plan.terms as f64 * model.term + 4.0 * model.pass,
-        Evaluator::Rows => spectrum + rows(f64::from(window.height), f64::from(window.width)) + 5.0 * model.pass,
+    match evaluator {
+        Evaluator::Direct => 0.0,
+        Evaluator::Series => pixels * size.terms * model.term + 4.0 * model.pass,
+        Evaluator::Rows => rows(f64::from(window.height), f64::from(window.width)) + 5.0 * model.pass,
         Evaluator::Grid => {
-            let [columns, lines] = plan.lattice.map_or([0.0; 2], |lattice| lattice.nodes.map(f64::from));
+            let [columns, lines] = size.nodes;
             let strips = columns * f64::from(window.height) * model.strip;
-            spectrum + rows(lines, columns) + strips + pixels * model.interpolation + GRID_PASSES * model.pass
+            rows(lines, columns) + strips + pixels * model.interpolation + GRID_PASSES * model.pass
         }
-    };
-    Cost { evaluator: plan.evaluator, milliseconds: field * 1e-6 }
+    }
+}
+
+/// What summing so many ghosts at every pixel costs, in nanoseconds.
+pub(super) fn direct(ghosts: usize, request: &Request) -> f64 {
+    let bells = ghosts as f64 * slower(ghosts) + AROUND_BELLS;
+    request.frame.window.pixels() as f64 * bells * request.cost_model.bell
 }
 
 /// What `direct` does at a pixel beside its bells, in bells: 2 to 3 on llvmpipe, for 1 to 6 ghosts.

@@ -15,13 +15,15 @@ pub enum Transform {
     /// Every ghost meets the moments of its cell, on the CPU, and the moments meet the modes: `series::moments`. For
     /// ghosts of one size, which their bell's coefficients can multiply afterwards.
     Gather(Cells),
+    /// Not at all: the ghosts are summed at every pixel.
+    Direct,
 }
 
 impl Transform {
     /// What a gathered ghost has to do, in moments: its own, and what it takes to find its cell and its polynomials.
     pub fn moments(&self) -> f64 {
         match self {
-            Self::Dispatch => 0.0,
+            Self::Dispatch | Self::Direct => 0.0,
             Self::Gather(cells) => EACH + f64::from(cells.orders[0]) * f64::from(cells.orders[1]),
         }
     }
@@ -88,6 +90,7 @@ pub(super) fn cost(group: &Group, transform: &Transform, model: &CostModel) -> f
     let modes = group.degree.map(|degree| f64::from(degree + 1));
     let ghosts = group.ghosts as f64;
     match transform {
+        Transform::Direct => 0.0,
         Transform::Dispatch => ghosts * modes[0] * modes[1] * model.spectrum,
         Transform::Gather(cells) => {
             let ([x, y], [p, q]) = (cells.counts.map(f64::from), cells.orders.map(f64::from));

@@ -14,6 +14,7 @@ mod rounding;
 mod search;
 mod series;
 mod slots;
+mod split;
 mod terms;
 mod weigh;
 
@@ -24,6 +25,7 @@ use crate::frame::Frame;
 use crate::scene::Ghost;
 use crate::{Error, Result};
 
+pub use crate::choices::Evaluator;
 pub use cost::{Cost, CostModel, GRID_PASSES};
 pub use gather::Transform;
 pub use lattice::{Lattice, MOST_NODES};
@@ -36,36 +38,6 @@ use weigh::Weighed;
 
 /// Highest harmonic that a plan may use along one axis.
 pub const HIGHEST_DEGREE: u32 = 4096;
-
-/// How the field is computed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, clap::ValueEnum)]
-#[serde(rename_all = "lowercase")]
-pub enum Evaluator {
-    /// Sum the bells at every pixel.
-    Direct,
-    /// Sum every kept term of the series at every pixel.
-    Series,
-    /// Sum over the harmonics in y once for each row, then over those in x at every pixel.
-    Rows,
-    /// Evaluate the series on the coarse lattice that its band limit allows, then interpolate.
-    Grid,
-}
-
-impl Evaluator {
-    /// Every evaluator.
-    pub const ALL: [Self; 4] = [Self::Direct, Self::Series, Self::Rows, Self::Grid];
-}
-
-impl std::fmt::Display for Evaluator {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Direct => "direct",
-            Self::Series => "series",
-            Self::Rows => "rows",
-            Self::Grid => "grid",
-        })
-    }
-}
 
 /// What is asked of the plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -149,6 +121,16 @@ impl Plan {
         self.groups.iter().map(|group| group.members.len()).sum()
     }
 
+    /// How many of them are summed directly at every pixel: all by `direct`, a few or none beside a series.
+    pub fn summed(&self) -> usize {
+        self.summed_groups().map(|group| group.members.len()).sum()
+    }
+
+    /// The groups of those.
+    pub fn summed_groups(&self) -> impl Iterator<Item = &Group> {
+        self.groups.iter().filter(|group| group.transform == Transform::Direct)
+    }
+
     /// What it is expected to cost, in milliseconds.
     pub fn cost(&self) -> Option<f64> {
         self.costs.first().map(|cost| cost.milliseconds)
@@ -177,14 +159,21 @@ pub struct Prediction {
     pub interpolation: f64,
     /// Moments of cells that are left out.
     pub gathering: f64,
-    /// f32: phases, tables, sums.
+    /// f32 while it computes: phases, products, sums.
     pub rounding: f64,
+    /// f32 as the format in which passes leave their results to each other: spectrum, tables, lattice.
+    pub storage: f64,
 }
 
 impl Prediction {
     /// All of it.
     pub fn total(&self) -> f64 {
-        self.dropped + self.periodisation + self.truncation + self.interpolation + self.gathering + self.rounding
+        self.dropped + self.periodisation + self.truncation + self.interpolation + self.gathering + self.single()
+    }
+
+    /// What single precision costs in all.
+    pub fn single(&self) -> f64 {
+        self.rounding + self.storage
     }
 }
 
@@ -238,6 +227,12 @@ pub fn plan(ghosts: &[Ghost], asked: &Request) -> Result<Plan> {
             Ok(plan) => candidates.push(plan),
             Err(error) => refusals.push((evaluator, error)),
         }
+    }
+    if let Some(survey) = split::apart(ghosts, &survey, request) {
+        let wide = Wide::new(ghosts, &survey, request);
+        let series = wanted.iter().filter(|&&evaluator| evaluator != Evaluator::Direct);
+        // One that cannot be had was never asked for by that name.
+        candidates.extend(series.flat_map(|&evaluator| candidate(ghosts, &survey, wide.as_ref(), request, evaluator)));
     }
     let mut costs: Vec<Cost> = candidates.iter().flat_map(|plan: &Plan| plan.costs.clone()).collect();
     costs.sort_by(|a, b| a.milliseconds.total_cmp(&b.milliseconds));
@@ -310,6 +305,9 @@ struct Survey {
     weighed: Weighed,
     groups: Vec<Group>,
     reaches: Vec<Reach>,
+    /// Groups that are no part of the series, and what f32 costs their sum.
+    summed: Vec<Group>,
+    summed_rounding: f64,
 }
 
 impl Survey {
@@ -317,7 +315,7 @@ impl Survey {
         let weighed = weigh::weigh(ghosts, request);
         let groups = terms::group(ghosts, &weighed);
         let reaches = period::reaches(ghosts, &weighed, request.frame);
-        Self { weighed, groups, reaches }
+        Self { weighed, groups, reaches, summed: Vec::new(), summed_rounding: 0.0 }
     }
 }
 
@@ -333,7 +331,7 @@ fn candidate(
     let mut degree = request.degree.map_or(rounding::SEEN_DEGREE, |[n, m]| n.max(m));
     loop {
         let rounding = rounding::bound(ghosts, &survey.weighed, request.frame, evaluator, degree);
-        let plan = with_rounding(rounding, survey, wide, request, evaluator)?;
+        let plan = with_rounding(rounding + survey.summed_rounding, survey, wide, request, evaluator)?;
         let needed = plan.degree[0].max(plan.degree[1]);
         if evaluator == Evaluator::Direct || needed <= degree {
             return Ok(plan);
@@ -358,6 +356,7 @@ fn with_rounding(
     if usable < 0.25 * request.tolerance && !given {
         return Err(Error::ToleranceBelowFloor { asked: request.tolerance, floor: rounding / 0.75 });
     }
+    let storage = rounding::stored(weighed, evaluator).min(rounding);
     let mut plan = Plan {
         tolerance: request.tolerance,
         evaluator,
@@ -370,17 +369,25 @@ fn with_rounding(
         scale: weighed.scale,
         peaks: weighed.peaks.clone(),
         dropped: weighed.dropped,
-        predicted: Prediction { dropped: weighed.dropped_error, rounding, ..Prediction::default() },
+        predicted: Prediction {
+            dropped: weighed.dropped_error,
+            rounding: rounding - storage,
+            storage,
+            ..Prediction::default()
+        },
         costs: Vec::new(),
         refused: Vec::new(),
     };
-    if evaluator != Evaluator::Direct {
+    if evaluator == Evaluator::Direct {
+        plan.groups.iter_mut().for_each(|group| group.transform = Transform::Direct);
+    } else {
         series::plan_series(&mut plan, survey, wide, request, usable)?;
+        plan.groups.extend_from_slice(&survey.summed);
     }
-    // `direct` takes eight ghosts a round, and a few rounds more to gather them.
+    // `direct` takes eight ghosts a round where there are many, and a few rounds more to gather them.
     let rounds = match evaluator {
         Evaluator::Direct => plan.ghosts() / 7,
-        Evaluator::Series => plan.terms + plan.counts.len(),
+        Evaluator::Series => plan.terms + plan.counts.len() + plan.summed(),
         Evaluator::Rows | Evaluator::Grid => 0,
     };
     if rounds > request.loop_rounds {

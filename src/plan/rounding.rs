@@ -20,6 +20,22 @@ fn per_weight(evaluator: Evaluator) -> f64 {
     }
 }
 
+/// Of that, what comes of storing alone: half a unit in the last place of each result that one pass leaves to the next. For
+/// `direct` these are the ghosts; for a series its terms and the harmonics of both axes; then the profiles of `rows`; and
+/// then `grid`'s lattice, cells and strips.
+pub(super) fn stored(weighed: &Weighed, evaluator: Evaluator) -> f64 {
+    const HALF_A_UNIT: f64 = 0.5 * f32::EPSILON as f64;
+    let results = match evaluator {
+        Evaluator::Direct => 1.0,
+        Evaluator::Series => 3.0,
+        Evaluator::Rows => 4.0,
+        Evaluator::Grid => 7.0,
+    };
+    // A single bell's direct sum is bounded by what reaches the picture, however bright it is elsewhere.
+    let weight = if evaluator == Evaluator::Direct { 1.0 } else { weighed.weight.max(1.0) };
+    HALF_A_UNIT * results * weight
+}
+
 /// `direct` has positions in f32, so a bell far from the origin shifts: by half a rounding of its centre, and two and a
 /// half of the pixel's, which is what a division in GLSL may be off by.
 const PER_CENTER: f64 = 3.0 * f32::EPSILON as f64;
@@ -29,7 +45,7 @@ const PER_CENTER: f64 = 3.0 * f32::EPSILON as f64;
 pub(super) const SEEN_DEGREE: u32 = 100;
 const PER_DEGREE: f64 = 200.0;
 
-/// A bound of the rounding error of series up to a degree, relative to the field's largest value.
+/// A bound of the error of f32, storage included, for series up to a degree; relative to the field's largest value.
 pub(super) fn bound(ghosts: &[Ghost], weighed: &Weighed, frame: Frame, evaluator: Evaluator, degree: u32) -> f64 {
     if evaluator != Evaluator::Direct {
         let growth = 1.0 + f64::from(degree.saturating_sub(SEEN_DEGREE)) / PER_DEGREE;

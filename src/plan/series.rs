@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::amplitudes::{self, Amplitudes};
 use super::lattice::{self, Marginals};
-use super::{Evaluator, Group, Plan, Request, Survey, cost, gather, period, rounding, share, terms};
+use super::{Evaluator, Group, Plan, Prediction, Request, Survey, cost, gather, period, rounding, share, terms};
 use crate::scene::Ghost;
 use crate::{Error, Result};
 
@@ -78,15 +78,16 @@ pub(super) fn plan_series(
     };
     plan.predicted.periodisation =
         wide.map_or_else(|| period::error(&survey.reaches, plan.period), |w| w.periodisation);
+    let excess = excess(plan, usable);
     if plan.evaluator != Evaluator::Grid {
-        plan_terms(plan, wide, request, usable * share::TRUNCATION)?;
+        plan_terms(plan, wide, request, usable * share::TRUNCATION - excess)?;
         gather::choose(plan, request);
         return Ok(());
     }
     let mut cheapest: Option<(f64, Plan)> = None;
     let mut refusal = None;
     for (truncation, interpolation) in share::GRID {
-        match with_lattice(plan.clone(), wide, request, usable * truncation, usable * interpolation) {
+        match with_lattice(plan.clone(), wide, request, usable * truncation - excess, usable * interpolation) {
             Ok(plan) => {
                 let cost = cost::estimate(&plan, request).milliseconds;
                 if cheapest.as_ref().is_none_or(|(least, _)| cost < *least) {
@@ -102,6 +103,18 @@ pub(super) fn plan_series(
         (None, None) => {}
     }
     Ok(())
+}
+
+/// What is dropped and what copies add beyond their shares of what may be used up; the terms have to make up for it.
+///
+/// Ghosts are dropped by the tolerance, before anyone knows what rounding takes of it; a period that serves every
+/// evaluator is no evaluator's own; and one that was given may be off by anything, which no number of terms mends.
+fn excess(plan: &Plan, usable: f64) -> f64 {
+    const MENDED: f64 = 0.1;
+    let Prediction { dropped, periodisation, .. } = plan.predicted;
+    let shares = share::DROPPED + share::PERIODISATION - share::GATHERING;
+    // Nothing may be left at all, where the series is given.
+    (dropped + periodisation - shares * usable).min(MENDED * usable).max(0.0)
 }
 
 /// The plan with terms and a lattice, each within its part of the tolerance.

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use super::amplitudes::Amplitudes;
 use super::*;
+use crate::chance::Chance;
 use crate::reference;
 use crate::series::{Bell, Modes};
 
@@ -92,7 +93,7 @@ fn groups_hold_every_kept_ghost_once_and_sizes_within_half_an_octave() {
 fn the_direct_sum_knows_how_far_f32_shifts_a_small_bell() {
     let request = |ghosts: &[Ghost]| {
         let request = Request { evaluator: Some(Evaluator::Direct), ..Request::new(Frame::full(65, 37), 0.5) };
-        plan(ghosts, &request).unwrap().predicted.rounding
+        plan(ghosts, &request).unwrap().predicted.single()
     };
     let frame = Frame::full(65, 37);
     let pixel = frame.position(60.0, 3.0).to_array();
@@ -193,4 +194,33 @@ fn too_many_ghosts_for_their_modes_are_not_looked_at() {
     let mut survey = Survey::new(&ghosts, &Request::new(Frame::full(64, 36), 1e-3));
     let counts = terms::rectangle(&mut survey.groups, [12, 8]);
     assert!(Amplitudes::new(&ghosts, &survey.groups, &counts, DVec2::ONE, [1.0; 3]).is_none());
+}
+
+#[test]
+fn just_above_the_floor_there_is_a_plan_within_the_tolerance() {
+    // Where rounding takes most of the tolerance, what is dropped by the tolerance is much of what is left.
+    for seed in 0..12 {
+        let mut chance = Chance::new(seed);
+        let ghosts: Vec<Ghost> = (0..1500)
+            .map(|_| {
+                let [x, y] = [0, 1].map(|_| chance.between(-1.8, 1.8));
+                let size = 0.2 * chance.between(0.0, 1.5).exp();
+                Ghost { radiance: [chance.between(-16.0, 0.0).exp(); 3], ..ghost([x, y], [size; 2]) }
+            })
+            .collect();
+        for evaluator in [Evaluator::Series, Evaluator::Rows, Evaluator::Grid] {
+            let at = |tolerance| {
+                let request = Request::new(Frame::full(115, 58), tolerance);
+                plan(&ghosts, &Request { evaluator: Some(evaluator), ..request })
+            };
+            let floor = match at(1e-8) {
+                Err(Error::ToleranceBelowFloor { floor, .. }) => floor,
+                other => panic!("{evaluator}: {other:?}"),
+            };
+            for above in [1.001, 1.02, 1.1, 1.3, 2.0] {
+                let plan = at(above * floor).unwrap_or_else(|error| panic!("{evaluator}, {above} floors: {error}"));
+                assert!(plan.predicted.total() <= plan.tolerance, "{evaluator}, {above}: {:?}", plan.predicted);
+            }
+        }
+    }
 }

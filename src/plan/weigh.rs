@@ -20,6 +20,7 @@ const UNSEEN: f64 = 1e-30;
 const CANCELLED: f64 = 1e-13;
 
 /// The ghosts, weighed against the field's scale.
+#[derive(Clone)]
 pub(super) struct Weighed {
     /// A lower bound of the field's largest absolute value at any pixel, RGB; 1 for a colour that has nothing.
     pub scale: [f64; 3],

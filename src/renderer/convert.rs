@@ -2,7 +2,8 @@
 
 use glam::DVec2;
 
-use super::settings::{Normalize, Settings};
+use super::settings::Settings;
+use crate::choices::Normalize;
 use crate::gpu::composite::{Composite, Variant};
 use crate::gpu::field::Source;
 use crate::gpu::layout::{DirectGhost, SpectralGhost};
@@ -11,20 +12,26 @@ use crate::scene::Ghost;
 use crate::series::moments::{Cells, Point, Sums};
 use crate::series::{Bell, phase};
 
-/// The GLSL function that a plan's evaluator has readied; for `direct` there may be too many ghosts for a uniform block.
+/// The GLSL function that a plan's evaluator has readied, `direct` beside it where some ghosts are summed; there may be too
+/// many of them for a uniform block.
 pub(super) fn source(plan: &Plan, many_ghosts: bool) -> Source {
-    let series = |evaluator| Source { evaluator, bell: None, many_ghosts: false };
-    match plan.evaluator {
+    let series = match plan.evaluator {
         Evaluator::Direct => {
-            Source { evaluator: "\"evaluators/direct.glsl\"", bell: Some(bell_file(plan)), many_ghosts }
+            let evaluator = "\"evaluators/direct.glsl\"";
+            return Source { evaluator, series: None, bell: Some(bell_file(plan)), many_ghosts };
         }
-        Evaluator::Series => series("\"evaluators/series.glsl\""),
-        Evaluator::Rows => series("\"evaluators/rows.glsl\""),
-        Evaluator::Grid => series("\"evaluators/grid.glsl\""),
+        Evaluator::Series => "\"evaluators/series.glsl\"",
+        Evaluator::Rows => "\"evaluators/rows.glsl\"",
+        Evaluator::Grid => "\"evaluators/grid.glsl\"",
+    };
+    if plan.summed() == 0 {
+        return Source { evaluator: series, series: None, bell: None, many_ghosts: false };
     }
+    let evaluator = "\"evaluators/split.glsl\"";
+    Source { evaluator, series: Some(series), bell: Some(bell_file(plan)), many_ghosts }
 }
 
-/// The one bell that the plan's ghosts have, or all of them.
+/// The one bell that the summed ghosts have, or all of them.
 fn bell_file(plan: &Plan) -> &'static str {
     match one_kind(plan) {
         Some(bell) => bell.shape().shader(),
@@ -32,10 +39,10 @@ fn bell_file(plan: &Plan) -> &'static str {
     }
 }
 
-/// The bell of the plan's ghosts if they are of one kind.
+/// The bell of the summed ghosts if they are of one kind.
 fn one_kind(plan: &Plan) -> Option<&Bell> {
-    let bell = plan.groups.first().map_or(&Bell::Gaussian, |group| &group.bell);
-    plan.groups.iter().all(|group| group.bell.kind() == bell.kind()).then_some(bell)
+    let bell = plan.summed_groups().next().map_or(&Bell::Gaussian, |group| &group.bell);
+    plan.summed_groups().all(|group| group.bell.kind() == bell.kind()).then_some(bell)
 }
 
 /// The composite that the settings ask for.
@@ -73,14 +80,14 @@ pub(super) fn gathered(ghosts: &[Ghost], plan: &Plan, group: &Group, cells: &Cel
     cells.sums(group.members.len(), point, group.degree)
 }
 
-/// All ghosts that the plan keeps, as the direct sum takes them, and the parameters of their bells.
+/// The ghosts that the plan sums directly, as the shader takes them, and the parameters of their bells.
 pub(super) fn direct_ghosts(ghosts: &[Ghost], plan: &Plan) -> (Vec<DirectGhost>, Vec<[f32; 4]>) {
     let several = one_kind(plan).is_none();
     let mut shapes = Vec::new();
     // Where the parameters of the bells begin; there are only ever a few that have any.
     let mut begins: Vec<(&Bell, u32)> = Vec::new();
-    let mut direct = Vec::with_capacity(plan.ghosts());
-    for group in &plan.groups {
+    let mut direct = Vec::with_capacity(plan.summed());
+    for group in plan.summed_groups() {
         let begin = match begins.iter().find(|(bell, _)| *bell == &group.bell) {
             Some(&(_, begin)) => begin,
             None => {
@@ -123,7 +130,7 @@ pub(super) fn uniforms(plan: &Plan, settings: &Settings) -> Composite {
         light_gain: rgb(settings.light_gain, 1.0),
         luminance: rgb(settings.luminance, settings.threshold),
         strength: settings.strength as f32,
-        flat: (2.0 * plan.predicted.rounding * plan.scale.iter().fold(0.0, |a: f64, &b| a.max(b))) as f32,
+        flat: (2.0 * plan.predicted.single() * plan.scale.iter().fold(0.0, |a: f64, &b| a.max(b))) as f32,
         pad: [0.0; 2],
     }
 }

@@ -1,17 +1,6 @@
 //! What a person sets about the picture.
 
-/// How the field's values become glare.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, clap::ValueEnum)]
-#[serde(rename_all = "lowercase")]
-pub enum Normalize {
-    /// As they are: physical.
-    #[default]
-    None,
-    /// Clamped to 0..1.
-    Clamp,
-    /// Stretched so that the smallest over the picture becomes 0 and the largest 1, all colours alike; the prototype's.
-    Minmax,
-}
+use crate::choices::Normalize;
 
 /// What a person sets about the picture; the field does not depend on it.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -128,7 +128,7 @@ impl Scene {
             largest: self.size * canvas.scale,
             weight: self.centers.len() as f64,
             degree: self.degree,
-            transform: Transform::Dispatch,
+            transform: if evaluator == Evaluator::Direct { Transform::Direct } else { Transform::Dispatch },
         };
         Plan {
             tolerance: f64::INFINITY,

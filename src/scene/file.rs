@@ -2,13 +2,33 @@
 //!
 //! ```toml
 //! description = "a lamp and a blob"  # optional
+//! preset = "zoom"             # optional: the lens, where the file has no [[lens_ghost]]
+//! axis = [0.0, 0.1]           # optional: where the lens's axis meets the picture; the centre otherwise
 //! period = [4.0, 3.0]         # optional, of the series, in x and y; planned otherwise
-//! degree = [32, 24]           # optional, 1 to 4096; planned otherwise
+//! degree = [32, 24]           # optional, 0 to 4096; planned otherwise
+//!
+//! [look]                      # optional, like every key in it and in the next two
+//! strength = 1.0              # what the glare is multiplied by; 0 or more
+//! size = 1.0                  # what the ghosts' sizes are multiplied by
+//! tint = [1.0, 1.0, 1.0]      # what the ghosts' colours are multiplied by; 0 or more
+//! mix = "add"                 # or "energy"
+//! normalize = "none"          # or "clamp", "minmax"
+//!
+//! [find]                      # lights in the photo, where the file lists none
+//! threshold = 20.0
+//! merge = 0.02
+//! max_lights = 64
+//!
+//! [accuracy]
+//! tolerance = 1e-3            # between 0 and 1; or budget = 20.0, in milliseconds
+//! allow_floor = false
+//! evaluator = "grid"          # or "direct", "series", "rows"; planned otherwise
 //!
 //! [[light]]
 //! position = [0.3, 0.4]       # x, y; may lie outside the picture
 //! flux = [12.0, 10.0, 8.0]    # radiance × area, RGB, 0 or more
 //! size = 0.0                  # optional: rms distance from the centre along one axis; 0 is a point
+//! muted = false               # optional: kept in the file, makes no ghosts
 //!
 //! [[ghost]]
 //! bell = "gaussian"           # optional; docs/scenes.md has the others, and the keys that they need
@@ -18,7 +38,7 @@
 //!
 //! [[lens_ghost]]
 //! bell = "gaussian"           # optional
-//! along = -0.7                # centre = along × the light's position
+//! along = -0.7                # centre = axis + along × (the light's position − axis)
 //! size = 0.15                 # σ for a light that is a point; or [σx, σy]
 //! tint = [1.0, 0.9, 0.7]      # optional, white otherwise; 0 or more
 //! share = 0.01                # of the light's flux; 0 or more
@@ -36,6 +56,8 @@ use serde::de::DeserializeOwned;
 
 use super::bells::{Bells, Fault};
 use super::lens::Lens;
+use super::number::plain;
+use super::sections::{AccuracySection, AccuracyTable, FindSection, LookSection};
 use super::tables::{LensTable, LightsJson, LightsTable, SceneTable};
 use super::{Ghost, LensGhost, Light};
 use crate::{Error, Result};
@@ -45,12 +67,22 @@ use crate::{Error, Result};
 pub struct SceneFile {
     /// One line for people.
     pub description: String,
+    /// The lens, as the name of a preset that there is; `None` beside lens ghosts.
+    pub preset: Option<String>,
+    /// Where the lens's axis meets the picture; its centre where it is `None`.
+    pub axis: Option<DVec2>,
     /// Period of the series in x and y, half picture heights; planned where it is `None`.
     pub period: Option<DVec2>,
-    /// Highest harmonic in x and y, 1 to 4096; planned where it is `None`.
+    /// Highest harmonic in x and y, 0 to 4096; planned where it is `None`.
     pub degree: Option<[u32; 2]>,
-    /// Lights, in the file's order.
-    pub lights: Vec<Light>,
+    /// How the glare looks.
+    pub look: LookSection,
+    /// What counts as a light in the photo.
+    pub find: FindSection,
+    /// How exact the glare is to be.
+    pub accuracy: AccuracySection,
+    /// Lights, in the file's order; `None` where it leaves them to the photo, and empty for `light = []`.
+    pub lights: Option<Vec<Light>>,
     /// Ghosts that no light makes.
     pub ghosts: Vec<Ghost>,
     /// The lens that the lights are seen through; empty where the file names none.
@@ -63,18 +95,29 @@ pub struct SceneFile {
 ///
 /// [`Error::SceneFile`] with the line, the key and what was expected there, or why the file cannot be read.
 pub fn read_scene(path: &Path) -> Result<SceneFile> {
-    let text = text(path)?;
-    let table: SceneTable = from_toml(path, &text)?;
-    let period = table.period.map(|[x, y]| DVec2::new(x.0, y.0));
-    let located = |fault: Fault| Error::scene_file(path, pointed(&text, fault.span, &fault.message));
+    parse_scene(path, &text(path)?)
+}
+
+/// The scene that `text` describes, which came from `path`.
+pub(super) fn parse_scene(path: &Path, text: &str) -> Result<SceneFile> {
+    let table: SceneTable = from_toml(path, text)?;
+    let located = |fault: Fault| Error::scene_file(path, pointed(text, fault.span, &fault.message));
+    let preset = table.preset().map_err(located)?;
+    let period = table.period.map(|period| DVec2::from_array(plain(period)));
+    let accuracy = table.accuracy.map(AccuracyTable::section).transpose().map_err(located)?;
     let bells = Bells::new(path, table.profiles, period).map_err(located)?;
     let ghosts = table.ghosts.into_iter().map(|ghost| ghost.ghost(&bells));
     let lens_ghosts = table.lens_ghosts.into_iter().map(|ghost| ghost.lens_ghost(&bells));
     Ok(SceneFile {
         description: table.description,
+        preset,
+        axis: table.axis.map(|axis| DVec2::from_array(plain(axis))),
         period,
         degree: table.degree.map(|degree| degree.map(|d| d.0)),
-        lights: converted(table.lights),
+        look: table.look,
+        find: table.find,
+        accuracy: accuracy.unwrap_or_default(),
+        lights: table.lights.map(converted),
         ghosts: ghosts.collect::<Result<_, _>>().map_err(located)?,
         lens_ghosts: lens_ghosts.collect::<Result<_, _>>().map_err(located)?,
     })

@@ -115,6 +115,7 @@ fn light(region: &Moments, frame: &Frame) -> Light {
         position: frame.position(column, row),
         flux: region.flux.map(|sum| sum * side * side),
         size: variance.sqrt() * side,
+        muted: false,
     }
 }
 

@@ -26,19 +26,20 @@ impl Lens {
     }
 }
 
-/// The ghosts of all lights, light by light in the lens's order.
+/// The ghosts of all lights that are not muted, light by light in the lens's order.
 ///
-/// A lens ghost with `along` = a shows the light at a times its position and |a| times as large, blurred by the ghost's
-/// own bell. Of a Gaussian bell and a light of rms size s that is a Gaussian of variance σ² + (a s)² along each axis;
-/// another bell is made larger until its variance is that. The flux is the light's times share times tint, whatever the
-/// sizes.
-pub fn ghosts(lights: &[Light], lens: &Lens) -> Vec<Ghost> {
-    lights.iter().flat_map(|light| lens.ghosts.iter().map(|ghost| ghost.of(light))).collect()
+/// A lens ghost with `along` = a shows the light at axis + a (position − axis), |a| times as large and blurred by the
+/// ghost's own bell. Of a Gaussian bell and a light of rms size s that is a Gaussian of variance σ² + (a s)² along each
+/// axis; another bell is made larger until its variance is that. The flux is the light's times share times tint, whatever
+/// the sizes.
+pub fn ghosts(lights: &[Light], lens: &Lens, axis: DVec2) -> Vec<Ghost> {
+    let shining = lights.iter().filter(|light| !light.muted);
+    shining.flat_map(|light| lens.ghosts.iter().map(move |ghost| ghost.of(light, axis))).collect()
 }
 
 impl LensGhost {
-    /// The ghost of one light.
-    pub fn of(&self, light: &Light) -> Ghost {
+    /// The ghost of one light, through a lens whose axis meets the picture at `axis`.
+    pub fn of(&self, light: &Light, axis: DVec2) -> Ghost {
         let extent = self.along * light.size;
         let shape = self.bell.shape();
         let variance = shape.variance();
@@ -47,7 +48,7 @@ impl LensGhost {
         let peak = self.share / shape.integral(size);
         Ghost {
             bell: self.bell.clone(),
-            center: self.along * light.position,
+            center: axis + self.along * (light.position - axis),
             size,
             radiance: std::array::from_fn(|c| light.flux[c] * self.tint[c] * peak),
         }
@@ -65,24 +66,24 @@ mod tests {
 
     #[test]
     fn a_ghost_is_along_the_line_through_the_axis() {
-        let light = Light { position: DVec2::new(0.6, -0.4), flux: [1.0; 3], size: 0.0 };
-        let ghost = lens_ghost(-0.5, DVec2::new(0.3, 0.1)).of(&light);
+        let light = Light { position: DVec2::new(0.6, -0.4), flux: [1.0; 3], size: 0.0, muted: false };
+        let ghost = lens_ghost(-0.5, DVec2::new(0.3, 0.1)).of(&light, DVec2::ZERO);
         assert_eq!(ghost.center, DVec2::new(-0.3, 0.2));
         assert_eq!(ghost.size, DVec2::new(0.3, 0.1));
     }
 
     #[test]
     fn a_lights_extent_widens_its_ghost_by_its_magnification() {
-        let light = Light { position: DVec2::ZERO, flux: [1.0; 3], size: 0.4 };
-        let ghost = lens_ghost(-2.0, DVec2::new(0.6, 1.5)).of(&light);
+        let light = Light { position: DVec2::ZERO, flux: [1.0; 3], size: 0.4, muted: false };
+        let ghost = lens_ghost(-2.0, DVec2::new(0.6, 1.5)).of(&light, DVec2::ZERO);
         assert!((ghost.size - DVec2::new(1.0, 1.7)).length() < 1e-15);
-        assert_eq!(lens_ghost(0.0, DVec2::ONE).of(&light).size, DVec2::ONE);
+        assert_eq!(lens_ghost(0.0, DVec2::ONE).of(&light, DVec2::ZERO).size, DVec2::ONE);
     }
 
     #[test]
     fn a_ghosts_flux_is_the_lights_times_share_times_tint() {
-        let light = Light { position: DVec2::new(0.1, 0.2), flux: [7.0, 5.0, 3.0], size: 0.1 };
-        let ghost = lens_ghost(-0.7, DVec2::new(0.2, 0.05)).of(&light);
+        let light = Light { position: DVec2::new(0.1, 0.2), flux: [7.0, 5.0, 3.0], size: 0.1, muted: false };
+        let ghost = lens_ghost(-0.7, DVec2::new(0.2, 0.05)).of(&light, DVec2::ZERO);
         // Summed over the plane on a grid, which for a Gaussian this well sampled is exact.
         let step = 0.01;
         let integral: f64 = (-300..=300)
@@ -96,10 +97,11 @@ mod tests {
 
     #[test]
     fn ghosts_go_light_by_light() {
-        let at = |x| Light { position: DVec2::new(x, 0.0), flux: [1.0; 3], size: 0.0 };
+        let at = |x| Light { position: DVec2::new(x, 0.0), flux: [1.0; 3], size: 0.0, muted: false };
         let along = |a| lens_ghost(a, DVec2::ONE);
         let lens = Lens { name: String::new(), description: String::new(), ghosts: vec![along(1.0), along(-1.0)] };
-        let centers: Vec<_> = ghosts(&[at(0.5), at(0.25)], &lens).iter().map(|ghost| ghost.center.x).collect();
+        let centers: Vec<_> =
+            ghosts(&[at(0.5), at(0.25)], &lens, DVec2::ZERO).iter().map(|ghost| ghost.center.x).collect();
         assert_eq!(centers, [0.5, -0.5, 0.25, -0.25]);
         assert!((lens.veiling_share() - 2.0 * 0.02 * (0.2126 + 0.5 * 0.7152)).abs() < 1e-15);
     }

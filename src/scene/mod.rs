@@ -11,12 +11,16 @@ mod lens;
 mod number;
 pub mod presets;
 mod regions;
+mod sections;
 mod tables;
 pub mod threshold;
+mod write;
 
 pub use file::{SceneFile, read_lens, read_lights, read_scene};
 pub use find::{FindOptions, Found, find};
 pub use lens::{Lens, ghosts};
+pub use sections::{AccuracySection, FindSection, Goal, LookSection};
+pub use write::{to_toml, write_scene};
 
 /// A bright source.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,6 +31,8 @@ pub struct Light {
     pub flux: [f64; 3],
     /// Root mean square distance of its light from its centre along one axis, in half picture heights; 0 is a point.
     pub size: f64,
+    /// Whether it is kept but makes no ghosts.
+    pub muted: bool,
 }
 
 /// How a lens turns any light into one ghost.
@@ -34,7 +40,7 @@ pub struct Light {
 pub struct LensGhost {
     /// The bell's profile.
     pub bell: Bell,
-    /// The ghost's centre is `along` times the light's position: 1 is on the light, −1 opposite it across the axis.
+    /// The ghost's centre is `along` times as far from the axis as the light: 1 is on the light, −1 opposite it.
     pub along: f64,
     /// Sizes in x and y, for a light that is a point: σ of a Gaussian, half the width of a bell that ends.
     pub size: DVec2,
@@ -58,6 +64,17 @@ pub struct Ghost {
 }
 
 impl Ghost {
+    /// The ghost made `factor` times as large, > 0, with the same flux: so much wider, so much fainter.
+    pub fn scaled(self, factor: f64) -> Self {
+        let (shape, size) = (self.bell.shape(), factor * self.size);
+        // The integral of a bell that is not periodic goes with the area of its sizes; that of a profile may be 0.
+        let fainter = match shape.period() {
+            Some(_) => shape.integral(self.size) / shape.integral(size),
+            None => factor.powi(-2),
+        };
+        Self { size, radiance: self.radiance.map(|radiance| radiance * fainter), ..self }
+    }
+
     /// The ghost's flux, RGB: its integral over the plane.
     pub fn flux(&self) -> [f64; 3] {
         let volume = self.bell.shape().integral(self.size);

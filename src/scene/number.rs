@@ -9,14 +9,14 @@ use glam::DVec2;
 use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Unexpected, Visitor};
 
 /// What a number must be.
-pub(super) trait Rule {
+pub(super) trait Allowed {
     /// In words, as in "expected …".
     const EXPECTED: &'static str;
     /// Whether it is.
     fn holds(x: f64) -> bool;
 }
 
-/// A number that follows a rule.
+/// A number of a range.
 pub(super) struct Number<R>(pub f64, PhantomData<R>);
 
 /// Any finite number.
@@ -29,25 +29,33 @@ pub(super) type Positive = Number<IsPositive>;
 pub(super) struct IsFinite;
 pub(super) struct IsNotNegative;
 pub(super) struct IsPositive;
+pub(super) struct IsFraction;
 
-impl Rule for IsFinite {
+impl Allowed for IsFinite {
     const EXPECTED: &'static str = "a finite number";
     fn holds(x: f64) -> bool {
         x.abs() <= f64::from(f32::MAX)
     }
 }
 
-impl Rule for IsNotNegative {
+impl Allowed for IsNotNegative {
     const EXPECTED: &'static str = "a finite number that is not negative";
     fn holds(x: f64) -> bool {
         IsFinite::holds(x) && x >= 0.0
     }
 }
 
-impl Rule for IsPositive {
+impl Allowed for IsPositive {
     const EXPECTED: &'static str = "a positive finite number";
     fn holds(x: f64) -> bool {
         IsFinite::holds(x) && x >= f64::from(f32::MIN_POSITIVE)
+    }
+}
+
+impl Allowed for IsFraction {
+    const EXPECTED: &'static str = "a number between 0 and 1";
+    fn holds(x: f64) -> bool {
+        x > 0.0 && x < 1.0
     }
 }
 
@@ -62,7 +70,7 @@ pub(super) fn plain<R, const N: usize>(numbers: [Number<R>; N]) -> [f64; N] {
     numbers.map(|number| number.0)
 }
 
-impl<'de, R: Rule> Deserialize<'de> for Number<R> {
+impl<'de, R: Allowed> Deserialize<'de> for Number<R> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_f64(NumberVisitor(PhantomData))
     }
@@ -70,7 +78,7 @@ impl<'de, R: Rule> Deserialize<'de> for Number<R> {
 
 struct NumberVisitor<R>(PhantomData<R>);
 
-impl<R: Rule> Visitor<'_> for NumberVisitor<R> {
+impl<R: Allowed> Visitor<'_> for NumberVisitor<R> {
     type Value = Number<R>;
 
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -135,7 +143,7 @@ impl<'de> Visitor<'de> for SizesVisitor {
     }
 }
 
-/// The highest harmonic along an axis, 1 to [`Degree::MAX`].
+/// The highest harmonic along an axis, 0 to [`Degree::MAX`].
 pub(super) struct Degree(pub u32);
 
 impl Degree {
@@ -155,12 +163,12 @@ impl Visitor<'_> for DegreeVisitor {
     type Value = Degree;
 
     fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "a whole number from 1 to {}", Degree::MAX)
+        write!(f, "a whole number from 0 to {}", Degree::MAX)
     }
 
     fn visit_i64<E: Error>(self, n: i64) -> Result<Degree, E> {
         match u32::try_from(n) {
-            Ok(degree @ 1..=Degree::MAX) => Ok(Degree(degree)),
+            Ok(degree @ 0..=Degree::MAX) => Ok(Degree(degree)),
             _ => Err(E::invalid_value(Unexpected::Signed(n), &self)),
         }
     }

@@ -6,6 +6,8 @@ use toml::Spanned;
 
 use super::bells::{BellKeys, BellName, Bells, Fault, ProfileTable};
 use super::number::{Degree, Finite, NotNegative, Number, Positive, Sizes, plain};
+use super::presets;
+use super::sections::{AccuracyTable, FindSection, LookSection};
 use super::{Ghost, LensGhost, Light};
 
 /// A scene file; also a file of lights alone.
@@ -14,12 +16,19 @@ use super::{Ghost, LensGhost, Light};
 pub(super) struct SceneTable {
     #[serde(default)]
     pub description: String,
+    pub preset: Option<Spanned<String>>,
+    pub axis: Option<[Finite; 2]>,
     pub period: Option<[Positive; 2]>,
     pub degree: Option<[Degree; 2]>,
+    #[serde(default)]
+    pub look: LookSection,
+    #[serde(default)]
+    pub find: FindSection,
+    pub accuracy: Option<AccuracyTable>,
     #[serde(default, rename = "profile")]
     pub profiles: Vec<ProfileTable>,
-    #[serde(default, rename = "light")]
-    pub lights: Vec<LightTable>,
+    #[serde(rename = "light")]
+    pub lights: Option<Vec<LightTable>>,
     #[serde(default, rename = "ghost")]
     pub ghosts: Vec<GhostTable>,
     #[serde(default, rename = "lens_ghost")]
@@ -59,6 +68,8 @@ pub(super) struct LightTable {
     flux: [NotNegative; 3],
     #[serde(default = "zero")]
     size: NotNegative,
+    #[serde(default)]
+    muted: bool,
 }
 
 #[derive(Deserialize)]
@@ -94,8 +105,21 @@ fn white() -> [NotNegative; 3] {
 }
 
 impl From<LightTable> for Light {
-    fn from(LightTable { position, flux, size }: LightTable) -> Self {
-        Self { position: DVec2::from_array(plain(position)), flux: plain(flux), size: size.0 }
+    fn from(LightTable { position, flux, size, muted }: LightTable) -> Self {
+        Self { position: DVec2::from_array(plain(position)), flux: plain(flux), size: size.0, muted }
+    }
+}
+
+impl SceneTable {
+    /// The preset that the lens is, if it is one.
+    pub fn preset(&self) -> Result<Option<String>, Fault> {
+        let Some(preset) = &self.preset else { return Ok(None) };
+        let fault = |message: String| Fault { span: preset.span(), message };
+        if !self.lens_ghosts.is_empty() {
+            return Err(fault("expected either `preset` or [[lens_ghost]], found both".into()));
+        }
+        presets::find(preset.as_ref()).map_err(|error| fault(error.to_string()))?;
+        Ok(Some(preset.as_ref().clone()))
     }
 }
 

@@ -87,6 +87,11 @@ impl Profile {
         Self::from_rows(&rows, peak)
     }
 
+    /// Radius and value, row by row; [`Profile::new`] makes the same profile of them.
+    pub fn rows(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.radii.iter().zip(&self.values).map(|(&radius, &value)| [radius, value])
+    }
+
     fn radius(&self) -> f64 {
         self.radii[self.radii.len() - 1]
     }

@@ -57,13 +57,7 @@ impl Look {
 impl Optics {
     /// The ghosts, light by light.
     pub fn ghosts(&self) -> Vec<Ghost> {
-        let from_axis = |light: &Light| Light { position: light.position - self.axis, ..*light };
-        let lights: Vec<Light> = self.lights.iter().map(from_axis).collect();
-        let mut ghosts = scene::ghosts(&lights, &self.lens);
-        for ghost in &mut ghosts {
-            ghost.center += self.axis;
-        }
-        ghosts
+        scene::ghosts(&self.lights, &self.lens, self.axis)
     }
 }
 
@@ -74,7 +68,7 @@ mod tests {
 
     #[test]
     fn ghosts_keep_to_the_line_through_their_light_and_the_axis() {
-        let light = Light { position: DVec2::new(0.5, 0.25), flux: [1.0; 3], size: 0.0 };
+        let light = Light { position: DVec2::new(0.5, 0.25), flux: [1.0; 3], size: 0.0, muted: false };
         let lens = presets::named(presets::DEFAULT_PRESET).unwrap();
         let mut look = Look::new(&[light, light], lens, Settings::default());
         look.axis = DVec2::new(0.1, -0.2);

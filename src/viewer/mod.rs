@@ -6,6 +6,7 @@
 //! | `app` | [`App`]: what is open, and one frame of it, with or without a window |
 //! | `document` | an open photo: its pixels, its look, how it is looked at |
 //! | `look` | what a person sets of the glare |
+//! | `model` | looks that are saved, their history, their command line; no egui, no GL |
 //! | `viewing` | what a person sets of the view, and where pixels lie on the screen for it |
 //! | `stage` | the picture on the device; computes what has changed, and nothing else |
 //! | `loader` | files, read in the background |
@@ -23,6 +24,7 @@ mod control;
 mod document;
 mod loader;
 mod look;
+pub mod model;
 mod panels;
 mod shortcuts;
 mod stage;

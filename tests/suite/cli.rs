@@ -3,6 +3,7 @@
 mod bad_input;
 mod calibrate;
 mod harmonics;
+mod look;
 mod outputs;
 mod plan;
 mod refusals;

@@ -26,6 +26,7 @@ mod scale;
 mod scene;
 mod special;
 mod sphere;
+mod split;
 mod support;
 mod tiles;
 mod view;

@@ -71,7 +71,7 @@ fn rounding_stays_below_its_bound() {
             if plan.evaluator == evaluator {
                 let weight: f64 = plan.groups.iter().map(|group| group.weight).sum();
                 per_weight.take(error / weight, || name.clone());
-                share.take(error / plan.predicted.rounding, || name.clone());
+                share.take(error / plan.predicted.single(), || name.clone());
             }
         }
         println!("{evaluator}: worst error for each unit of weight {per_weight}, share of the bound {share}");

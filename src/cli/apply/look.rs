@@ -1,120 +1,45 @@
 //! How the glare is laid over the photo.
 
-use clap::ValueEnum;
-
-use crate::cli::numbers::not_negative;
-use crate::cli::scene::Gathered;
-use crate::photo::Photo;
-use crate::renderer::{Normalize, Settings};
-use crate::scene::Ghost;
-use crate::{Error, Result};
+use crate::choices::{Mix, Normalize};
+use crate::cli::numbers::{colour, not_negative, positive};
+use crate::look::Look;
 
 /// How the glare is laid over the photo.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Look")]
 pub struct LookArgs {
-    /// What the glare is multiplied by, 0 or more; 0 writes the photo as it is
-    #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = not_negative)]
-    pub strength: f64,
+    /// What the glare is multiplied by, 0 or more; 0 writes the photo as it is [default: 1]
+    #[arg(long, value_name = "S", value_parser = not_negative)]
+    strength: Option<f64>,
 
-    /// Whether the glare's light is added, or taken from the photo's lights
-    #[arg(long, value_enum, default_value_t = Mix::Add)]
-    pub mix: Mix,
+    /// What the size of every ghost is multiplied by, above 0; its light stays as much as it is [default: 1]
+    #[arg(long, value_name = "F", value_parser = positive)]
+    size: Option<f64>,
+
+    /// What the colour of every ghost is multiplied by, 0 or more each [default: 1,1,1]
+    #[arg(long, value_name = "R,G,B", value_parser = colour)]
+    tint: Option<[f64; 3]>,
+
+    /// Whether the glare's light is added, or taken from the photo's lights [default: add]
+    #[arg(long, value_enum)]
+    mix: Option<Mix>,
 
     /// What becomes of the glare's values before they are added: nothing, clamped to 0..1, or stretched to 0..1 by the
-    /// smallest and the largest in the picture
-    #[arg(long, value_enum, default_value_t = Normalize::None)]
-    pub normalize: Normalize,
+    /// smallest and the largest in the picture [default: none]
+    #[arg(long, value_enum)]
+    normalize: Option<Normalize>,
 }
 
-/// Where the glare's light comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, serde::Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Mix {
-    /// From nowhere: the photo keeps its own
-    Add,
-    /// From the pixels that are lights: what scatters is missing there
-    Energy,
-}
-
-/// What the composite is told, and what to warn of.
-///
-/// # Errors
-/// [`Error::Usage`] where light is to be taken for glare that is not physical.
-pub fn settings(look: &LookArgs, photo: &Photo, scene: &Gathered) -> Result<(Settings, Option<String>)> {
-    let mut settings = Settings {
-        strength: look.strength,
-        normalize: look.normalize,
-        luminance: photo.luminance_weights(),
-        ..Settings::default()
-    };
-    if look.mix == Mix::Add {
-        return Ok((settings, None));
-    }
-    if look.normalize != Normalize::None {
-        return Err(Error::Usage("--mix energy needs --normalize none: only that glare has a light's energy".into()));
-    }
-    let threshold = scene.found.as_ref().map_or(f64::INFINITY, |found| found.threshold);
-    let (gain, enough) = light_gain(photo, &scene.ghosts, threshold, look.strength);
-    settings.threshold = threshold;
-    settings.light_gain = gain;
-    let warning = (!enough).then(|| {
-        "the glare has more light than the photo's lights; they are black now, and the picture has gained light".into()
-    });
-    Ok((settings, warning))
-}
-
-/// What the pixels at or above `threshold` keep of themselves, so that they lose what the ghosts carry; and whether
-/// they have that much to lose.
-fn light_gain(photo: &Photo, ghosts: &[Ghost], threshold: f64, strength: f64) -> ([f64; 3], bool) {
-    let weights = photo.luminance_weights();
-    let area = photo.frame.pixel_size().powi(2);
-    let mut bright = [0.0; 3];
-    for pixel in &photo.pixels {
-        let light = [pixel[0], pixel[1], pixel[2]].map(f64::from);
-        let luminance: f64 = light.iter().zip(weights).map(|(light, weight)| light * weight).sum();
-        // As the composite's shader decides; NaN is never at or above anything.
-        if luminance >= threshold && light.iter().all(|light| light.is_finite()) {
-            for (bright, light) in bright.iter_mut().zip(light) {
-                *bright += light * area;
-            }
+impl LookArgs {
+    /// What is given wins over what was set before.
+    pub fn over(&self, look: Look) -> Look {
+        Look {
+            strength: self.strength.unwrap_or(look.strength),
+            size: self.size.unwrap_or(look.size),
+            tint: self.tint.unwrap_or(look.tint),
+            mix: self.mix.unwrap_or(look.mix),
+            normalize: self.normalize.unwrap_or(look.normalize),
+            ..look
         }
-    }
-    let mut scattered = [0.0; 3];
-    for ghost in ghosts {
-        for (scattered, flux) in scattered.iter_mut().zip(ghost.flux()) {
-            *scattered += strength * flux;
-        }
-    }
-    let kept = [0, 1, 2].map(|c| if scattered[c] > 0.0 { 1.0 - scattered[c] / bright[c] } else { 1.0 });
-    (kept.map(|kept| if kept.is_nan() { 0.0 } else { kept.max(0.0) }), kept.iter().all(|&kept| kept >= 0.0))
-}
-
-#[cfg(test)]
-mod tests {
-    use glam::DVec2;
-
-    use super::*;
-    use crate::series::Bell;
-
-    #[test]
-    fn lights_lose_what_the_ghosts_carry() {
-        let mut pixels = vec![[0.1, 0.1, 0.1, 1.0]; 16];
-        pixels[5] = [100.0, 50.0, 20.0, 1.0];
-        let photo = Photo::new(4, 4, pixels);
-        // The light's flux is 100 × 0.5² = 25 in red.
-        let ghost = |flux: f64| Ghost {
-            bell: Bell::Gaussian,
-            center: DVec2::ZERO,
-            size: DVec2::ONE,
-            radiance: [flux / std::f64::consts::TAU, 0.0, 0.0],
-        };
-        let (gain, enough) = light_gain(&photo, &[ghost(2.5)], 10.0, 2.0);
-        assert!((gain[0] - 0.8).abs() < 1e-12 && gain[1..] == [1.0, 1.0] && enough, "{gain:?}");
-        let (gain, enough) = light_gain(&photo, &[ghost(50.0)], 10.0, 1.0);
-        assert_eq!((gain, enough), ([0.0, 1.0, 1.0], false));
-        let (gain, enough) = light_gain(&photo, &[ghost(1.0)], f64::INFINITY, 1.0);
-        assert_eq!((gain, enough), ([0.0, 1.0, 1.0], false));
-        assert_eq!(light_gain(&photo, &[], 10.0, 1.0), ([1.0; 3], true));
     }
 }

@@ -19,10 +19,12 @@ use super::accuracy::AccuracyArgs;
 use super::lights::FindArgs;
 use super::numbers::finite;
 use super::scene::SceneArgs;
+use crate::Result;
 use crate::certificate::Verify;
+use crate::look::Look;
 use crate::photo::{Depth, ToneMap};
 
-use look::{LookArgs, Mix};
+use look::LookArgs;
 
 pub use run::run;
 
@@ -98,9 +100,14 @@ Examples:
   vglare apply shot.*.exr -o 'previews/{name}.png' --keep-going --quiet";
 
 impl Args {
-    /// Whether anything is rendered at all.
-    fn renders(&self) -> bool {
-        self.look.strength != 0.0
+    /// The look that the files and options give.
+    ///
+    /// # Errors
+    /// Those of [`SceneArgs::look`].
+    pub fn look(&self) -> Result<Look> {
+        let look = self.look.over(self.scene.look()?);
+        let (find, accuracy) = (self.find.over(look.find), self.accuracy.over(look.accuracy));
+        Ok(Look { find, accuracy, ..look })
     }
 }
 
@@ -203,5 +210,131 @@ impl From<ToneMapArg> for ToneMap {
             ToneMapArg::Aces => Self::Aces,
             ToneMapArg::Agx => Self::Agx,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use glam::DVec2;
+
+    use super::*;
+    use crate::choices::{Evaluator, Mix, Normalize};
+    use crate::look::{Accuracy, LookLens, LookLights};
+    use crate::scene::{FindOptions, Goal, Light, presets, write_scene};
+    use crate::viewer::model::command_line;
+
+    #[derive(clap::Parser)]
+    struct Cli {
+        #[command(flatten)]
+        args: Args,
+    }
+
+    /// The look of a command line that begins with `vglare apply`.
+    fn look(line: &str) -> Look {
+        let words = shlex::split(line).unwrap().into_iter().skip(1);
+        let Cli { args } = clap::Parser::try_parse_from(words).unwrap_or_else(|error| panic!("{line}: {error}"));
+        assert_eq!((&*args.inputs, &*args.output), (&["my night.exr".into()][..], Path::new("it's.png")));
+        args.look().unwrap()
+    }
+
+    fn again(look_before: &Look, file: Option<&Path>) -> Look {
+        look(&command_line(look_before, Path::new("my night.exr"), Path::new("it's.png"), file).unwrap())
+    }
+
+    /// Everything that an option can say.
+    fn changed() -> Look {
+        Look {
+            lens: LookLens::preset("zoom").unwrap(),
+            axis: DVec2::new(-0.1, 1.0 / 3.0),
+            size: 0.7,
+            tint: [1.0, 0.1, 0.0],
+            find: FindOptions { threshold: Some(1e-7), merge: 0.0, max_lights: 5 },
+            strength: 1e9,
+            mix: Mix::Energy,
+            normalize: Normalize::Minmax,
+            accuracy: Accuracy {
+                goal: Goal::Tolerance(1.0 / 7000.0),
+                allow_floor: true,
+                degree: Some([0, 12]),
+                period: Some(DVec2::new(4.1, 3.0)),
+                evaluator: Some(Evaluator::Rows),
+            },
+            ..Look::default()
+        }
+    }
+
+    #[test]
+    fn the_windows_command_line_is_parsed_as_the_same_look() {
+        let accuracy = Accuracy { goal: Goal::Budget(16.7), ..Accuracy::default() };
+        for look in [Look::default(), changed(), Look { accuracy, ..Look::default() }] {
+            assert_eq!(again(&look, None), look);
+        }
+    }
+
+    #[test]
+    fn files_of_the_windows_command_line_are_read_as_the_same_look() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        std::fs::write(path("my lens.toml"), presets::find("anamorphic").unwrap().toml).unwrap();
+        let lens = crate::scene::read_lens(&path("my lens.toml")).unwrap();
+        let filed = Look { lens: LookLens::File(path("my lens.toml"), lens), ..changed() };
+        assert_eq!(again(&filed, None), filed);
+        let light = Light { position: DVec2::new(2.0, 0.1), flux: [1.0, 0.0, 0.3], size: 0.0, muted: true };
+        let own = LookLens::Own(presets::named("eye").unwrap().ghosts);
+        let listed = Look { lights: LookLights::Listed(vec![light]), lens: own, ..changed() };
+        write_scene(&path("my look.toml"), &listed.to_scene(), false).unwrap();
+        assert_eq!(again(&listed, Some(&path("my look.toml"))), listed);
+    }
+
+    #[test]
+    fn the_help_names_the_defaults_that_a_look_has() {
+        use clap::CommandFactory as _;
+        let (look, command) = (Look::default(), Cli::command());
+        let Goal::Tolerance(tolerance) = look.accuracy.goal else { panic!("the default is a tolerance") };
+        let defaults = [
+            ("preset", look.lens().name),
+            ("axis", format!("{},{}", look.axis.x, look.axis.y)),
+            ("merge", look.find.merge.to_string()),
+            ("max_lights", look.find.max_lights.to_string()),
+            ("strength", look.strength.to_string()),
+            ("size", look.size.to_string()),
+            ("tint", look.tint.map(|part| part.to_string()).join(",")),
+            ("mix", format!("{:?}", look.mix).to_lowercase()),
+            ("normalize", format!("{:?}", look.normalize).to_lowercase()),
+            ("tolerance", tolerance.to_string()),
+        ];
+        for (name, default) in defaults {
+            let option = command.get_arguments().find(|option| option.get_id() == name).expect(name);
+            let help = option.get_long_help().or(option.get_help()).expect(name).to_string();
+            assert!(help.contains(&format!("[default: {default}]")), "{name}: {help}");
+        }
+    }
+
+    #[test]
+    fn options_win_over_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("look.toml");
+        let (accuracy, file) = (Accuracy::default(), changed().to_scene());
+        write_scene(&path, &file, false).unwrap();
+        let line = format!("vglare apply 'my night.exr' -o \"it's.png\" --scene {}", path.display());
+        assert_eq!(look(&line), changed());
+        let given = "--preset classic-prime --axis 0,0 --size 1 --tint 1,1,1 --threshold 2 --merge 0.02 \
+                     --max-lights 64 --strength 1 --mix add --normalize none --tolerance 0.001 --degree 1,1 \
+                     --period 3,3 --evaluator grid";
+        let expected = Look {
+            find: FindOptions { threshold: Some(2.0), ..FindOptions::default() },
+            accuracy: Accuracy {
+                allow_floor: true,
+                degree: Some([1, 1]),
+                period: Some(DVec2::splat(3.0)),
+                evaluator: Some(Evaluator::Grid),
+                ..accuracy
+            },
+            ..Look::default()
+        };
+        assert_eq!(look(&format!("{line} {given}")), expected);
+        assert_eq!(look(&format!("{line} --budget 5")).accuracy.goal, Goal::Budget(5.0));
     }
 }

@@ -4,11 +4,12 @@ use serde::Serialize;
 
 use super::job::Job;
 use crate::certificate::Certificate;
+use crate::choices::{Mix, Normalize};
 use crate::cli::plan::CostModelReport;
-use crate::cli::scene::Gathered;
 use crate::gpu::{Info, PassTime};
 use crate::photo::BadKind;
 use crate::plan::Plan;
+use crate::scene::Light;
 
 /// As JSON, one object.
 #[derive(Serialize)]
@@ -18,8 +19,10 @@ pub struct Report<'a> {
     output: String,
     scene: SceneReport<'a>,
     strength: f64,
-    normalize: crate::renderer::Normalize,
-    mix: super::Mix,
+    size: f64,
+    tint: [f64; 3],
+    normalize: Normalize,
+    mix: Mix,
     plan: Option<&'a Plan>,
     cost: Option<CostReport<'a>>,
     notes: &'a [String],
@@ -68,6 +71,7 @@ struct FirstBad {
 #[derive(Serialize)]
 struct SceneReport<'a> {
     lens: Option<&'a str>,
+    axis: [f64; 2],
     threshold: Option<f64>,
     regions: Option<usize>,
     lights_dropped: Option<usize>,
@@ -80,6 +84,7 @@ struct LightReport {
     position: [f64; 2],
     flux: [f64; 3],
     size: f64,
+    muted: bool,
 }
 
 /// A stage of the run and how long it took.
@@ -95,33 +100,35 @@ impl<'a> Report<'a> {
             vglare: env!("CARGO_PKG_VERSION"),
             input: photo_report(job),
             output: job.paths.output.display().to_string(),
-            scene: scene_report(&job.scene),
-            strength: job.args.look.strength,
-            normalize: job.args.look.normalize,
-            mix: job.args.look.mix,
-            plan: job.planned.as_ref().map(|planned| &planned.plan),
+            scene: scene_report(&job.work),
+            strength: job.work.look.strength,
+            size: job.work.look.size,
+            tint: job.work.look.tint,
+            normalize: job.work.look.normalize,
+            mix: job.work.look.mix,
+            plan: job.work.planned.as_ref().map(|planned| &planned.plan),
             cost: cost_report(job),
-            notes: job.planned.as_ref().map_or(&[], |planned| &planned.notes),
-            error: job.certificate.as_ref(),
-            passes: &job.passes,
-            milliseconds: job.stages.0.iter().map(|&(stage, wall_ms)| Stage { stage, wall_ms }).collect(),
-            renderer: job.info.as_deref(),
+            notes: job.work.planned.as_ref().map_or(&[], |planned| &planned.notes),
+            error: job.work.certificate.as_ref(),
+            passes: &job.work.passes,
+            milliseconds: job.work.stages.0.iter().map(|&(stage, wall_ms)| Stage { stage, wall_ms }).collect(),
+            renderer: job.work.info.as_deref(),
         }
     }
 }
 
 fn cost_report<'a>(job: &'a Job<'_>) -> Option<CostReport<'a>> {
-    let planned = job.planned.as_ref()?;
+    let planned = job.work.planned.as_ref()?;
     Some(CostReport {
-        budget_ms: job.args.accuracy.budget,
+        budget_ms: job.work.look.accuracy.goal.budget(),
         predicted_ms: planned.plan.cost(),
-        measured_ms: job.measured_ms,
+        measured_ms: job.work.measured_ms,
         model: CostModelReport::new(planned),
     })
 }
 
 fn photo_report(job: &Job<'_>) -> PhotoReport {
-    let (photo, bad) = (&job.photo, &job.bad);
+    let (photo, bad) = (&job.work.photo, &job.work.bad);
     let window = photo.frame.window;
     PhotoReport {
         file: job.paths.input.display().to_string(),
@@ -147,17 +154,24 @@ pub fn kind_name(kind: BadKind) -> &'static str {
     }
 }
 
-fn scene_report(scene: &Gathered) -> SceneReport<'_> {
+fn scene_report<'a>(work: &'a crate::job::Job<'_>) -> SceneReport<'a> {
+    let scene = &work.scene;
     let found = scene.found.as_ref();
     SceneReport {
         lens: scene.lens.as_ref().map(|lens| lens.name.as_str()),
+        axis: work.look.axis.to_array(),
         threshold: found.map(|found| found.threshold),
         regions: found.map(|found| found.regions),
         lights_dropped: found.map(|found| found.dropped),
         lights: scene
             .lights
             .iter()
-            .map(|light| LightReport { position: light.position.to_array(), flux: light.flux, size: light.size })
+            .map(|&Light { position, flux, size, muted }| LightReport {
+                position: position.to_array(),
+                flux,
+                size,
+                muted,
+            })
             .collect(),
         ghosts: scene.ghosts.len(),
     }

@@ -1,12 +1,13 @@
 //! The run itself: one photo after the other, or a single one.
 
-use super::job::{Computer, Job, Stages};
+use super::job::Job;
 use super::outputs::{self, Paths};
 use super::report::Report;
 use super::{Args, sequence, summary};
 use crate::cli::progress::Progress;
-use crate::cli::scene::Files;
 use crate::gpu::Device;
+use crate::job::{Computer, Stages};
+use crate::look::Look;
 use crate::photo::{self, Photo};
 use crate::{Error, Result, target};
 
@@ -23,14 +24,14 @@ pub fn run(args: &Args) -> Result<()> {
 
 fn single(args: &Args) -> Result<()> {
     let progress = Progress::start(args.quiet);
-    let files = Files::read(&args.scene)?;
+    let look = args.look()?;
     let paths = Paths::single(args);
     progress.step("reading the photo");
     let mut stages = Stages::default();
-    let (photo, mut computer) = stages.time("read", || read(args, &paths))?;
+    let (photo, mut computer) = stages.time("read", || read(args, &paths, &look))?;
 
     progress.step("finding the lights");
-    let mut job = Job::found(args, &paths, &files, photo, stages)?;
+    let mut job = Job::found(args, &paths, &look, photo, stages)?;
     job.compute(computer.as_mut(), &progress)?;
 
     progress.step("writing");
@@ -40,17 +41,17 @@ fn single(args: &Args) -> Result<()> {
     }
     drop(progress);
     summary::print(&job)?;
-    match &job.certificate {
+    match &job.work.certificate {
         Some(certificate) if args.proof.strict => certificate.check(),
         _ => Ok(()),
     }
 }
 
 /// Reads the photo while the GL context opens: neither needs the other, and both take a while.
-fn read(args: &Args, paths: &Paths) -> Result<(Photo, Option<Computer>)> {
+fn read(args: &Args, paths: &Paths, look: &Look) -> Result<(Photo, Option<Computer>)> {
     std::thread::scope(|scope| {
         let photo = scope.spawn(|| photo::read(&paths.input));
-        let device = args.renders().then(|| Device::open(args.accuracy.backend.backends()));
+        let device = look.renders().then(|| Device::open(args.accuracy.backend.backends()));
         let photo = photo.join().unwrap_or_else(|_| Err(Error::read_photo(&paths.input, "the reader failed")))?;
         Ok((photo, device.transpose()?.map(Computer::new)))
     })

@@ -1,14 +1,14 @@
 //! Several photos: the next is read and the last written while one is computed.
 
 use super::Args;
-use super::job::{Computer, Job};
+use super::job::Job;
 use super::outputs::{Paths, Sequence};
 use super::pipeline;
 use super::tally::Tally;
 use crate::Result;
 use crate::cli::progress::Progress;
-use crate::cli::scene::Files;
 use crate::gpu::Device;
+use crate::job::Computer;
 
 /// A photo on its way, or why it is not.
 struct Item<'a> {
@@ -32,15 +32,15 @@ pub fn run(args: &Args, sequence: &Sequence) -> Result<()> {
     progress.part(format!("0 of {} photos", frames.len()), 0.0);
     // The bar is the sequence's: what goes on within a photo is not shown.
     let hidden = Progress::start(true);
-    let files = Files::read(&args.scene)?;
+    let look = args.look()?;
     let mut tally = Tally::new(args, sequence, &progress);
     let read = |index: usize| {
         let paths = &frames[index];
-        let job = paths.make_folders().and_then(|()| Job::read(args, paths, &files));
+        let job = paths.make_folders().and_then(|()| Job::read(args, paths, &look));
         Item { paths, job }
     };
     let open = || {
-        let device = args.renders().then(|| Device::open(args.accuracy.backend.backends()));
+        let device = look.renders().then(|| Device::open(args.accuracy.backend.backends()));
         Ok(device.transpose()?.map(Computer::new))
     };
     let compute = |computer: &mut Option<Computer>, item| compute(item, computer.as_mut(), &hidden);

@@ -7,13 +7,13 @@ use super::report::kind_name;
 use crate::Result;
 use crate::certificate::Verify;
 use crate::cli::plan::text;
-use crate::cli::scene::Gathered;
 use crate::cli::stdout;
+use crate::look::Gathered;
 use crate::plan::Plan;
 
 /// Warnings to standard error; unless quiet, a short summary to standard output.
 pub fn print(job: &Job<'_>) -> Result<()> {
-    for warning in &job.warnings {
+    for warning in &job.work.warnings {
         eprintln!("vglare: warning: {warning}");
     }
     if job.args.quiet {
@@ -21,21 +21,21 @@ pub fn print(job: &Job<'_>) -> Result<()> {
     }
     stdout::print(|out| {
         about_photo(out, job)?;
-        about_scene(out, &job.scene)?;
-        if let Some(planned) = &job.planned {
+        about_scene(out, &job.work.scene)?;
+        if let Some(planned) = &job.work.planned {
             about_plan(out, job, &planned.plan)?;
             planned.notes.iter().try_for_each(|note| writeln!(out, "note     {note}"))?;
         }
         if job.args.verbose {
             about_times(out, job)?;
         }
-        let total: f64 = job.stages.0.iter().map(|(_, ms)| ms).sum();
+        let total: f64 = job.work.stages.0.iter().map(|(_, ms)| ms).sum();
         writeln!(out, "wrote    {} in {:.2} s", job.paths.output.display(), total * 1e-3)
     })
 }
 
 fn about_photo(out: &mut dyn Write, job: &Job<'_>) -> io::Result<()> {
-    let (photo, bad) = (&job.photo, &job.bad);
+    let (photo, bad) = (&job.work.photo, &job.work.bad);
     let (width, height) = (photo.width(), photo.height());
     let (format, depth) = (photo.format_name(), photo.depth_name());
     writeln!(out, "photo    {}: {width} x {height}, {format}, {depth}", job.paths.input.display())?;
@@ -61,7 +61,10 @@ fn about_scene(out: &mut dyn Write, scene: &Gathered) -> io::Result<()> {
             n => writeln!(out, "; {n} fainter ones left out, {:.1} % of the flux", 100.0 * found.dropped_share)?,
         }
     } else if !scene.lights.is_empty() {
-        writeln!(out, "lights   {}, as listed", scene.lights.len())?;
+        match scene.lights.iter().filter(|light| light.muted).count() {
+            0 => writeln!(out, "lights   {}, as listed", scene.lights.len())?,
+            muted => writeln!(out, "lights   {}, as listed, {muted} of them muted", scene.lights.len())?,
+        }
     } else if scene.ghosts.is_empty() {
         writeln!(out, "lights   none, so no glare")?;
     }
@@ -73,12 +76,12 @@ fn about_scene(out: &mut dyn Write, scene: &Gathered) -> io::Result<()> {
 
 fn about_plan(out: &mut dyn Write, job: &Job<'_>, plan: &Plan) -> io::Result<()> {
     text::plan(out, plan)?;
-    if let Some(budget) = job.args.accuracy.budget {
+    if let Some(budget) = job.work.look.accuracy.goal.budget() {
         write!(out, "budget   {budget} ms bought a tolerance of {:.1e}", plan.tolerance)?;
-        let (predicted, measured) = (plan.cost().unwrap_or(f64::NAN), job.measured_ms.unwrap_or(f64::NAN));
+        let (predicted, measured) = (plan.cost().unwrap_or(f64::NAN), job.work.measured_ms.unwrap_or(f64::NAN));
         writeln!(out, ": {predicted:.1} ms predicted, {measured:.1} ms measured")?;
     }
-    if let Some(error) = &job.certificate {
+    if let Some(error) = &job.work.certificate {
         let all = if error.verify == Verify::Full { "all " } else { "" };
         writeln!(
             out,
@@ -86,24 +89,24 @@ fn about_plan(out: &mut dyn Write, job: &Job<'_>, plan: &Plan) -> io::Result<()>
             error.measured, error.pixels, error.predicted, error.asked
         )?;
     }
-    match &job.info {
+    match &job.work.info {
         Some(info) => writeln!(out, "renderer {}, {}", info.renderer, info.route),
         None => Ok(()),
     }
 }
 
 fn about_times(out: &mut dyn Write, job: &Job<'_>) -> io::Result<()> {
-    if let Some(planned) = &job.planned {
+    if let Some(planned) = &job.work.planned {
         text::details(out, planned)?;
     }
-    for pass in &job.passes {
+    for pass in &job.work.passes {
         write!(out, "pass     {:<13}{:>9.2} ms", pass.pass, pass.wall_ms)?;
         match pass.gpu_ms {
             Some(gpu) => writeln!(out, ", {gpu:.2} ms by the device's timer")?,
             None => writeln!(out)?,
         }
     }
-    for (stage, ms) in &job.stages.0 {
+    for (stage, ms) in &job.work.stages.0 {
         writeln!(out, "stage    {stage:<13}{ms:>9.2} ms")?;
     }
     Ok(())

@@ -115,9 +115,9 @@ impl<'a> Tally<'a> {
 
     fn written(&mut self, job: &Job<'_>) -> Result<()> {
         self.written += 1;
-        self.bad += usize::from(job.bad.first.is_some());
-        self.info = self.info.take().or(job.info.clone());
-        if let Some(error) = &job.certificate {
+        self.bad += usize::from(job.work.bad.first.is_some());
+        self.info = self.info.take().or(job.work.info.clone());
+        if let Some(error) = &job.work.certificate {
             self.measured += 1;
             self.missed += usize::from(error.check().is_err());
             // Not a number is worse than any, in this order.
@@ -132,7 +132,7 @@ impl<'a> Tally<'a> {
             self.reports.push(report);
         }
         self.progress.aside(|| {
-            for warning in &job.warnings {
+            for warning in &job.work.warnings {
                 eprintln!("vglare: warning: {}: {warning}", job.paths.input.display());
             }
             if self.args.verbose { stdout::print(|out| line(out, job)) } else { Ok(()) }
@@ -207,17 +207,17 @@ impl<'a> Tally<'a> {
 
 /// A photo that was written, in a line.
 fn line(out: &mut dyn Write, job: &Job<'_>) -> io::Result<()> {
-    let (photo, scene) = (&job.photo, &job.scene);
+    let (photo, scene) = (&job.work.photo, &job.work.scene);
     write!(out, "photo    {}: {} x {}, ", job.paths.output.display(), photo.width(), photo.height())?;
     if let Some(found) = &scene.found {
         write!(out, "{} lights at {:.4} and above, ", scene.lights.len(), found.threshold)?;
     }
     write!(out, "{} ghosts, ", scene.ghosts.len())?;
-    if let (Some(planned), Some(error)) = (&job.planned, &job.certificate) {
+    if let (Some(planned), Some(error)) = (&job.work.planned, &job.work.certificate) {
         write!(out, "{}, error {:.1e}, ", planned.plan.evaluator, error.measured)?;
     }
-    let total: f64 = job.stages.0.iter().map(|(_, ms)| ms).sum();
+    let total: f64 = job.work.stages.0.iter().map(|(_, ms)| ms).sum();
     writeln!(out, "{:.2} s", total * 1e-3)?;
-    let notes = job.planned.iter().flat_map(|planned| &planned.notes);
+    let notes = job.work.planned.iter().flat_map(|planned| &planned.notes);
     notes.into_iter().try_for_each(|note| writeln!(out, "note     {note}"))
 }

@@ -24,7 +24,11 @@ const SHOWN: usize = 12;
 struct Outcome {
     name: String,
     chosen: Evaluator,
+    /// Whether some ghosts are summed beside a series.
+    split: bool,
     fastest: Evaluator,
+    /// Whether that is the choice itself.
+    best: bool,
     wall: Samples,
     over: Ratio,
     asked: f64,
@@ -44,9 +48,10 @@ pub(super) fn of_random_scenes(stage: &Stage, report: &mut Report, count: u32) -
     }
     outcomes.sort_by(|a, b| b.over.of_medians.total_cmp(&a.over.of_medians));
     let mut table = Table::new(format!("What the plan chose in {count} random scenes"), "fastest").shown(SHOWN);
-    for Outcome { name, chosen, fastest, wall, over, .. } in &outcomes {
-        let by = if chosen == fastest { format!("by {chosen}") } else { format!("by {chosen}; {fastest} is faster") };
-        table.row(format!("{name}, {by}"), wall, Some(*over));
+    for Outcome { name, chosen, split, fastest, best, wall, over, .. } in &outcomes {
+        let beside = if *split { " beside a sum" } else { "" };
+        let faster = if *best { String::new() } else { format!("; {fastest} is faster") };
+        table.row(format!("{name}, by {chosen}{beside}{faster}"), wall, Some(*over));
     }
     report.table(table.note(format!("The worst first; --csv and --json have them all.\n{}", looseness(&outcomes))));
     let per_cent = |holds: &dyn Fn(&Outcome) -> bool| {
@@ -65,11 +70,13 @@ fn outcome(stage: &Stage, seed: u64) -> Result<Outcome> {
     let asked = |evaluator| Request { evaluator, ..stage.request(frame, tolerance) };
     let chosen = plan(&ghosts, &asked(None))?;
     let limit = HOPELESS * chosen.cost().unwrap_or(f64::INFINITY);
-    let plans: Vec<Plan> = Evaluator::ALL
-        .into_iter()
-        .filter_map(|evaluator| plan(&ghosts, &asked(Some(evaluator))).ok())
-        .filter(|plan| plan.evaluator == chosen.evaluator || plan.cost().is_some_and(|cost| cost <= limit))
-        .collect();
+    // The choice stands first; it may be none of the others, where it sums some ghosts beside a series.
+    let others = Evaluator::ALL.into_iter().filter_map(|evaluator| plan(&ghosts, &asked(Some(evaluator))).ok());
+    let others = others.filter(|plan| {
+        let same = plan.evaluator == chosen.evaluator && plan.summed() == chosen.summed();
+        !same && plan.cost().is_some_and(|cost| cost <= limit)
+    });
+    let plans: Vec<Plan> = std::iter::once(chosen.clone()).chain(others).collect();
     let mut actors = plans.iter().map(|plan| stage.actor(frame, &ghosts, plan)).collect::<Result<Vec<Actor>>>()?;
     let times = in_turns(stage.rounds, actors.len(), |index| {
         let started = std::time::Instant::now();
@@ -77,15 +84,16 @@ fn outcome(stage: &Stage, seed: u64) -> Result<Outcome> {
         Ok(started.elapsed().as_secs_f64() * 1e3)
     })?;
     let times: Vec<Samples> = times.into_iter().map(|times| times.into_iter().collect()).collect();
-    let own = plans.iter().position(|plan| plan.evaluator == chosen.evaluator).unwrap_or_default();
-    let fastest = (0..times.len()).min_by(|&a, &b| times[a].median().total_cmp(&times[b].median())).unwrap_or(own);
-    let certificate = Certificate::measure(actors[own].renderer(), &ghosts, &plans[own], frame, tolerance)?;
+    let fastest = (0..times.len()).min_by(|&a, &b| times[a].median().total_cmp(&times[b].median())).unwrap_or_default();
+    let certificate = Certificate::measure(actors[0].renderer(), &ghosts, &chosen, frame, tolerance)?;
     Ok(Outcome {
         name: format!("{seed}: {} x {}, K = {}, {tolerance:.0e}", frame.width, frame.height, ghosts.len()),
         chosen: chosen.evaluator,
+        split: chosen.evaluator != Evaluator::Direct && chosen.summed() > 0,
         fastest: plans[fastest].evaluator,
-        wall: times[own].clone(),
-        over: times[own].over(&times[fastest]),
+        best: fastest == 0,
+        wall: times[0].clone(),
+        over: times[0].over(&times[fastest]),
         asked: tolerance,
         predicted: certificate.predicted,
         measured: certificate.measured,

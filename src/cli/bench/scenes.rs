@@ -16,8 +16,9 @@ pub(super) fn default_lens() -> Result<Vec<Ghost>> {
         position: DVec2::new(x, y),
         flux: [flux, 0.9 * flux, 0.7 * flux],
         size: 0.02,
+        muted: false,
     };
-    Ok(ghosts(&lights.map(light), &presets::named(DEFAULT_PRESET)?))
+    Ok(ghosts(&lights.map(light), &presets::named(DEFAULT_PRESET)?, DVec2::ZERO))
 }
 
 /// `count` Gaussians spread evenly over the picture and a little beyond, of `smallest` to twice that size.

@@ -8,8 +8,9 @@ use std::io::{self, Write};
 use comfy_table::{CellAlignment, Table, presets};
 
 use super::progress::Progress;
-use super::{BackendChoice, calibration, stdout};
+use super::{BackendChoice, stdout};
 use crate::Result;
+use crate::calibration;
 use crate::gpu::Device;
 use crate::measure::Rounds;
 use crate::plan::CostModel;

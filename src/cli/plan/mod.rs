@@ -7,12 +7,14 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::accuracy::{AccuracyArgs, Planned};
+use super::accuracy::AccuracyArgs;
 use super::lights::FindArgs;
-use super::scene::{Files, Gathered, SceneArgs};
+use super::scene::SceneArgs;
 use super::stdout;
 use crate::frame::Frame;
 use crate::gpu::{Device, Info};
+use crate::job::{self, Planned};
+use crate::look::Gathered;
 use crate::plan::{CostModel, Plan};
 use crate::{Result, photo};
 
@@ -65,17 +67,20 @@ fn size(text: &str) -> Result<[u32; 2], String> {
 /// Where the photo or a file of the scene cannot be read, where there is no plan, or standard output cannot be written.
 /// No OpenGL is no error.
 pub fn run(args: &Args) -> Result<()> {
-    let files = Files::read(&args.scene)?;
+    let mut look = args.scene.look()?;
+    look.find = args.find.over(look.find);
+    look.accuracy = args.accuracy.over(look.accuracy);
     let photo = photo::read(&args.photo)?;
-    let scene = files.gather(&photo, &args.find, false);
+    let scene = look.gather(&photo);
     let frame = args.size.map_or(photo.frame, |[width, height]| Frame::full(width, height));
     let device = Device::open(args.accuracy.backend.backends()).ok();
     let info = device.as_ref().map(|device| device.info());
-    let planned = args.accuracy.plan(&scene, frame, info)?;
+    let planned = job::plan(&look.accuracy, &scene.ghosts, frame, info, args.accuracy.known(info))?;
     for warning in &planned.warnings {
         eprintln!("vglare: warning: {warning}");
     }
-    let told = Told { photo: &args.photo, frame, scene: &scene, planned: &planned, info, budget: args.accuracy.budget };
+    let budget = look.accuracy.goal.budget();
+    let told = Told { photo: &args.photo, frame, scene: &scene, planned: &planned, info, budget };
     stdout::print(|out| if args.json { told.json(out) } else { told.text(out) })
 }
 

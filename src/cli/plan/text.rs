@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
-use crate::cli::accuracy::Planned;
-use crate::plan::{Group, Plan, Transform};
+use crate::job::Planned;
+use crate::plan::{Evaluator, Group, Plan, Transform};
 use crate::series::moments::Cells;
 
 /// Groups that are told one by one.
@@ -18,6 +18,9 @@ pub fn plan(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
     if plan.terms > 0 {
         let ([n, m], period) = (plan.degree, plan.period);
         write!(out, ", degree {n} x {m}, {} terms, period {:.2} x {:.2}", plan.terms, period.x, period.y)?;
+    }
+    if plan.terms > 0 && plan.summed() > 0 {
+        write!(out, ", {} of {} ghosts summed directly", plan.summed(), plan.ghosts())?;
     }
     match plan.dropped {
         0 => writeln!(out),
@@ -49,13 +52,11 @@ fn groups(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
         let Group { bell, ghosts, smallest, largest, degree: [n, m], .. } = group;
         let more = if largest == smallest { "" } else { " and more" };
         write!(out, "{label:<9}{ghosts} {bell} of {:.3} x {:.3}{more}", smallest.x, smallest.y)?;
-        if plan.terms > 0 {
-            write!(out, ", degree {n} x {m}")?;
-        }
         match group.transform {
-            Transform::Dispatch => writeln!(out)?,
+            Transform::Direct => writeln!(out, ", summed directly")?,
+            Transform::Dispatch => writeln!(out, ", degree {n} x {m}")?,
             Transform::Gather(Cells { counts: [x, y], orders: [p, q] }) => {
-                writeln!(out, ", gathered in {x} x {y} cells of {p} x {q} moments")?;
+                writeln!(out, ", degree {n} x {m}, gathered in {x} x {y} cells of {p} x {q} moments")?;
             }
         }
     }
@@ -74,6 +75,7 @@ fn errors(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
         ("", "from interpolation", error.interpolation),
         ("", "from moments left out (gathering)", error.gathering),
         ("", "from rounding", error.rounding),
+        ("", "from keeping results as 32-bit floats (storage)", error.storage),
         ("", "in all (total)", error.total()),
     ] {
         writeln!(out, "{label:<9}at most {value:.1e} {source}")?;
@@ -86,11 +88,15 @@ fn candidates(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
     let least = plan.cost().unwrap_or(f64::NAN);
     for (index, cost) in plan.costs.iter().enumerate() {
         let name = cost.evaluator.to_string();
+        let beside = match (cost.evaluator, cost.summed) {
+            (Evaluator::Direct, _) | (_, 0) => String::new(),
+            (_, summed) => format!(", with {summed} summed directly"),
+        };
         match index {
-            0 => writeln!(out, "chosen   {name:<8}{:>10.1} ms expected", cost.milliseconds)?,
+            0 => writeln!(out, "chosen   {name:<8}{:>10.1} ms expected{beside}", cost.milliseconds)?,
             _ => {
-                let times = cost.milliseconds / least;
-                writeln!(out, "rejected {name:<8}{:>10.1} ms expected: {times:.1} times as much", cost.milliseconds)?;
+                let (ms, times) = (cost.milliseconds, cost.milliseconds / least);
+                writeln!(out, "rejected {name:<8}{ms:>10.1} ms expected{beside}: {times:.1} times as much")?;
             }
         }
     }

@@ -1,4 +1,6 @@
 use super::*;
+use crate::choices::{Evaluator, Mix, Normalize};
+use crate::scene::Goal;
 use crate::series::Bell;
 
 /// A file in a folder of its own; both are gone when it is dropped.
@@ -56,8 +58,9 @@ fn a_full_scene_is_read_with_whole_numbers_and_defaults() {
     let (_folder, path) = file("full.toml", FULL);
     let scene = read_scene(&path).unwrap();
     assert_eq!((scene.period, scene.degree), (Some(DVec2::new(4.0, 3.0)), Some([32, 24])));
-    assert_eq!(scene.lights[0], Light { position: DVec2::new(0.3, -2.0), flux: [12.0, 10.0, 8.0], size: 0.0 });
-    assert_eq!(scene.lights[1].size, 1.0);
+    let lights = scene.lights.unwrap();
+    let first = Light { position: DVec2::new(0.3, -2.0), flux: [12.0, 10.0, 8.0], size: 0.0, muted: false };
+    assert_eq!((lights[0], lights[1].size), (first, 1.0));
     let (bell, size) = (Bell::Gaussian, DVec2::new(0.2, 1.0));
     let ghost = Ghost { bell: bell.clone(), center: DVec2::new(0.25, -0.5), size, radiance: [1.0, -0.8, 0.0] };
     assert_eq!(scene.ghosts, [ghost]);
@@ -102,11 +105,11 @@ fn the_mark_is_below_the_number() {
 
 #[test]
 fn degrees_are_whole_numbers_up_to_4096() {
-    for bad in ["[0, 1]", "[1, 4097]", "[-3, 1]", "[1.5, 1]", "[1, 99999999999]", "[1, \"2\"]"] {
-        assert_refused(&format!("\ndegree = {bad}"), &["line 2, column ", "a whole number from 1 to 4096", "degree"]);
+    for bad in ["[1, 4097]", "[-3, 1]", "[1.5, 1]", "[1, 99999999999]", "[1, \"2\"]"] {
+        assert_refused(&format!("\ndegree = {bad}"), &["line 2, column ", "a whole number from 0 to 4096", "degree"]);
     }
-    let (_folder, path) = file("degree.toml", "degree = [1, 4096]");
-    assert_eq!(read_scene(&path).unwrap().degree, Some([1, 4096]));
+    let (_folder, path) = file("degree.toml", "degree = [0, 4096]");
+    assert_eq!(read_scene(&path).unwrap().degree, Some([0, 4096]));
 }
 
 #[test]
@@ -152,7 +155,7 @@ fn files_that_cannot_be_read_say_why() {
 
 #[test]
 fn lights_are_read_from_toml_and_json() {
-    let expected = [Light { position: DVec2::new(0.5, -0.25), flux: [1.0, 2.0, 3.0], size: 0.0 }];
+    let expected = [Light { position: DVec2::new(0.5, -0.25), flux: [1.0, 2.0, 3.0], size: 0.0, muted: false }];
     let toml = "[[light]]\nposition = [0.5, -0.25]\nflux = [1, 2, 3]\n";
     let json = "\u{feff} {\n \"threshold\": 2, \"lights\": [{\"position\": [0.5, -0.25], \"flux\": [1, 2, 3]}]}";
     for (name, content) in [("a.toml", toml), ("b.json", json), ("no-extension", json)] {
@@ -309,4 +312,60 @@ fn bells_that_cannot_be_had_are_refused_in_their_line() {
     assert_refused(both, &["line 2, column 8", "either `rows` or a `file`"]);
     let twice = "[[profile]]\nname = \"x\"\nrows = [[0, 1], [1, 0]]\n".repeat(2);
     assert_refused(&twice, &["line 5, column 8", "of that name already"]);
+}
+
+#[test]
+fn a_look_is_read_key_by_key() {
+    let (_folder, path) = file(
+        "look.toml",
+        "preset = \"zoom\"\naxis = [0.1, -2]\nlight = []\n[look]\nstrength = 0\nsize = 2\ntint = [1, 0, 2.5]\n\
+         mix = \"energy\"\nnormalize = \"minmax\"\n[find]\nthreshold = 20\nmerge = 0\nmax_lights = 3\n\
+         [accuracy]\nbudget = 20\nallow_floor = true\nevaluator = \"rows\"\n",
+    );
+    let scene = read_scene(&path).unwrap();
+    assert_eq!((scene.preset.as_deref(), scene.axis), (Some("zoom"), Some(DVec2::new(0.1, -2.0))));
+    assert_eq!(scene.lights, Some(Vec::new()));
+    let look = LookSection {
+        strength: Some(0.0),
+        size: Some(2.0),
+        tint: Some([1.0, 0.0, 2.5]),
+        mix: Some(Mix::Energy),
+        normalize: Some(Normalize::Minmax),
+    };
+    assert_eq!(scene.look, look);
+    assert_eq!(scene.find, FindSection { threshold: Some(20.0), merge: Some(0.0), max_lights: Some(3) });
+    let (goal, evaluator) = (Some(Goal::Budget(20.0)), Some(Evaluator::Rows));
+    assert_eq!(scene.accuracy, AccuracySection { goal, allow_floor: true, evaluator });
+}
+
+#[test]
+fn a_look_that_makes_no_sense_is_shown_in_its_line() {
+    let refusals: [(&str, &[&str]); 20] = [
+        ("[look]\nstrength = -1", &["line 2, column 12", "not negative, found -1", "look.strength"]),
+        ("[look]\nsize = 0", &["line 2, column 8", "a positive finite number, found 0"]),
+        ("[look]\ntint = [1, 1]", &["line 2, column 8", "an array of length 3"]),
+        ("[look]\ntint = [1, -1, 1]", &["line 2, column 12", "not negative, found -1"]),
+        ("[look]\nmix = \"subtract\"", &["line 2, column 7", "subtract", "energy"]),
+        ("[look]\nnormalize = 1", &["line 2, column 13"]),
+        ("[look]\nglow = 1", &["line 2, column 1", "unknown field `glow`", "strength"]),
+        ("[find]\nthreshold = nan", &["line 2, column 13", "not negative"]),
+        ("[find]\nmerge = -0.1", &["line 2, column 9", "not negative"]),
+        ("[find]\nmax_lights = -1", &["line 2, column 14", "-1"]),
+        ("[find]\nlights = 3", &["line 2, column 1", "unknown field `lights`", "max_lights"]),
+        ("[accuracy]\ntolerance = 1", &["line 2, column 13", "a number between 0 and 1, found 1"]),
+        ("[accuracy]\nbudget = 0", &["line 2, column 10", "a positive finite number"]),
+        ("[accuracy]\ntolerance = 0.1\nbudget = 5", &["line 3, column 10", "either `tolerance` or `budget`"]),
+        ("[accuracy]\nevaluator = \"fast\"", &["line 2, column 13", "fast", "direct"]),
+        ("[accuracy]\ndegree = 3", &["line 2, column 1", "unknown field `degree`"]),
+        ("\npreset = \"fish-eye\"", &["line 2, column 10", "no lens preset is called \"fish-eye\"", "zoom"]),
+        (
+            "preset = \"zoom\"\n[[lens_ghost]]\nalong = 1\nsize = 1\nshare = 1",
+            &["line 1, column 10", "either `preset` or [[lens_ghost]]"],
+        ),
+        ("axis = [0, nan]", &["line 1, column 12", "a finite number"]),
+        ("[[light]]\nposition = [0, 0]\nflux = [1, 1, 1]\nmuted = 1", &["line 4, column 9", "boolean"]),
+    ];
+    for (content, expected) in refusals {
+        assert_refused(content, expected);
+    }
 }

@@ -58,5 +58,5 @@ fn flux(light: &Light) -> f64 {
 fn another(lamps: &[Lamp]) -> Light {
     let faintest = lamps.iter().map(|lamp| flux(&lamp.light)).fold(f64::INFINITY, f64::min);
     let flux = if faintest.is_finite() { faintest } else { 1.0 };
-    Light { position: DVec2::ZERO, flux: [flux; 3], size: 0.0 }
+    Light { position: DVec2::ZERO, flux: [flux; 3], size: 0.0, muted: false }
 }

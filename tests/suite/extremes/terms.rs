@@ -61,7 +61,7 @@ fn degrees_up_to_the_highest_round_as_predicted() {
                         plan.predicted
                     );
                     if degrees[along] > 16 {
-                        worst.take(error / plan.predicted.rounding, || what);
+                        worst.take(error / plan.predicted.single(), || what);
                     }
                 }
             }

@@ -15,24 +15,6 @@ pub const FOLDER: &str = "VGLARE_CACHE";
 
 const FILE: &str = "calibration.json";
 
-/// Whether what was measured is used.
-#[derive(Debug, Clone, Copy, clap::Args)]
-pub struct CalibrationArgs {
-    /// Plan by the built-in cost model, whatever `vglare calibrate` measured here: the same plan on any machine
-    #[arg(long)]
-    no_calibration: bool,
-}
-
-impl CalibrationArgs {
-    /// The cost model for a device.
-    pub fn known(self, device: Option<&Info>) -> Known {
-        match device {
-            Some(device) if !self.no_calibration => Known::of(device),
-            _ => Known::default(),
-        }
-    }
-}
-
 /// What is known of a renderer's speed.
 #[derive(Debug, Default)]
 pub struct Known {
@@ -45,7 +27,8 @@ pub struct Known {
 }
 
 impl Known {
-    fn of(device: &Info) -> Self {
+    /// What is known of a device.
+    pub fn of(device: &Info) -> Self {
         // Without a cache folder nothing was ever kept.
         let Ok(path) = path() else { return Self::default() };
         match read(&path) {

@@ -1,0 +1,58 @@
+//! What a person chooses by name, with the same names on the command line, in files and in reports.
+
+use clap::ValueEnum;
+use serde::{Deserialize, Serialize};
+
+/// How the field is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Evaluator {
+    /// Sum the bells at every pixel.
+    Direct,
+    /// Sum every kept term of the series at every pixel.
+    Series,
+    /// Sum over the harmonics in y once for each row, then over those in x at every pixel.
+    Rows,
+    /// Evaluate the series on the coarse lattice that its band limit allows, then interpolate.
+    Grid,
+}
+
+impl Evaluator {
+    /// Every evaluator.
+    pub const ALL: [Self; 4] = [Self::Direct, Self::Series, Self::Rows, Self::Grid];
+}
+
+impl std::fmt::Display for Evaluator {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Direct => "direct",
+            Self::Series => "series",
+            Self::Rows => "rows",
+            Self::Grid => "grid",
+        })
+    }
+}
+
+/// How the field's values become glare.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Normalize {
+    /// As they are: physical.
+    #[default]
+    None,
+    /// Clamped to 0..1.
+    Clamp,
+    /// Stretched so that the smallest over the picture becomes 0 and the largest 1, all colours alike; the prototype's.
+    Minmax,
+}
+
+/// Where the glare's light comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Mix {
+    /// From nowhere: the photo keeps its own
+    #[default]
+    Add,
+    /// From the pixels that are lights: what scatters is missing there
+    Energy,
+}

@@ -1,0 +1,150 @@
+//! Looks as scene files, and back.
+
+use super::{Accuracy, Look, LookLens, LookLights};
+use crate::Result;
+use crate::scene::presets::DEFAULT_PRESET;
+use crate::scene::{AccuracySection, FindOptions, FindSection, LookSection, SceneFile};
+
+impl Look {
+    /// The look that a scene file describes; what it leaves open is as by default.
+    ///
+    /// # Errors
+    /// [`crate::Error::UnknownPreset`] for a preset that there is not, which no file that was read names.
+    pub fn from_scene(scene: SceneFile) -> Result<Self> {
+        // Ghosts alone are the whole scene: nothing then is looked for in the photo.
+        let ghosts_only = !scene.ghosts.is_empty() && scene.lens_ghosts.is_empty() && scene.preset.is_none();
+        let lights = match scene.lights {
+            Some(lights) => LookLights::Listed(lights),
+            None if ghosts_only => LookLights::Listed(Vec::new()),
+            None => LookLights::Found,
+        };
+        let lens = match scene.preset {
+            Some(name) => LookLens::preset(&name)?,
+            None if scene.lens_ghosts.is_empty() => LookLens::preset(DEFAULT_PRESET)?,
+            None => LookLens::Own(scene.lens_ghosts),
+        };
+        let LookSection { strength, size, tint, mix, normalize } = scene.look;
+        let AccuracySection { goal, allow_floor, evaluator } = scene.accuracy;
+        Ok(Self {
+            description: scene.description,
+            lens,
+            axis: scene.axis.unwrap_or_default(),
+            size: size.unwrap_or(1.0),
+            tint: tint.unwrap_or([1.0; 3]),
+            lights,
+            ghosts: scene.ghosts,
+            find: scene.find.options(),
+            strength: strength.unwrap_or(1.0),
+            mix: mix.unwrap_or_default(),
+            normalize: normalize.unwrap_or_default(),
+            accuracy: Accuracy {
+                goal: goal.unwrap_or_default(),
+                allow_floor,
+                degree: scene.degree,
+                period: scene.period,
+                evaluator,
+            },
+        })
+    }
+
+    /// The scene file that describes the look, with every value spelt out. The lens of a file becomes a table of the
+    /// scene's own.
+    pub fn to_scene(&self) -> SceneFile {
+        let (preset, lens_ghosts) = match &self.lens {
+            LookLens::Preset(lens) => (Some(lens.name.clone()), Vec::new()),
+            LookLens::File(_, lens) => (None, lens.ghosts.clone()),
+            LookLens::Own(ghosts) => (None, ghosts.clone()),
+        };
+        let lights = match &self.lights {
+            LookLights::Found => None,
+            LookLights::Listed(lights) => Some(lights.clone()),
+        };
+        let Accuracy { goal, allow_floor, degree, period, evaluator } = self.accuracy;
+        let FindOptions { threshold, merge, max_lights } = self.find;
+        SceneFile {
+            description: self.description.clone(),
+            preset,
+            axis: Some(self.axis),
+            period,
+            degree,
+            look: LookSection {
+                strength: Some(self.strength),
+                size: Some(self.size),
+                tint: Some(self.tint),
+                mix: Some(self.mix),
+                normalize: Some(self.normalize),
+            },
+            find: FindSection { threshold, merge: Some(merge), max_lights: Some(max_lights) },
+            accuracy: AccuracySection { goal: Some(goal), allow_floor, evaluator },
+            lights,
+            ghosts: self.ghosts.clone(),
+            lens_ghosts,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+
+    use super::*;
+    use crate::choices::{Evaluator, Mix, Normalize};
+    use crate::scene::{Ghost, Goal, Lens, Light, presets, read_scene, write_scene};
+    use crate::series::Bell;
+
+    fn through_a_file(look: &Look) -> Look {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("look.toml");
+        write_scene(&path, &look.to_scene(), false).unwrap();
+        Look::from_scene(read_scene(&path).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn a_look_comes_back_from_its_file() {
+        let light = Light { position: DVec2::new(2.5, -0.1), flux: [0.1, 0.2, 0.3], size: 0.1, muted: true };
+        let (bell, size) = (Bell::Gaussian, DVec2::new(0.1, 0.3));
+        let ghost = Ghost { bell, center: DVec2::ONE, size, radiance: [1.0, -1.0, 0.0] };
+        let Lens { ghosts: table, .. } = presets::named("zoom").unwrap();
+        let full = Look {
+            description: "all of it".into(),
+            lens: LookLens::Own(table.clone()),
+            axis: DVec2::new(0.1, 0.2),
+            size: 0.7,
+            tint: [1.0, 0.3, 0.0],
+            lights: LookLights::Listed(vec![light]),
+            ghosts: vec![ghost.clone()],
+            find: FindOptions { threshold: Some(3.5), merge: 0.1, max_lights: 5 },
+            strength: 1.7,
+            mix: Mix::Energy,
+            normalize: Normalize::None,
+            accuracy: Accuracy {
+                goal: Goal::Budget(12.5),
+                allow_floor: true,
+                degree: Some([0, 12]),
+                period: Some(DVec2::new(4.0, 3.0)),
+                evaluator: Some(Evaluator::Grid),
+            },
+        };
+        let none = Look { lights: LookLights::Listed(Vec::new()), ..Look::default() };
+        // Without the preset's name the ghost would be the whole scene.
+        let ghost_and_photo = Look { ghosts: vec![ghost], ..Look::default() };
+        for look in [Look::default(), full.clone(), none, ghost_and_photo] {
+            assert_eq!(through_a_file(&look), look);
+        }
+        let filed = Look { lens: LookLens::File("lens.toml".into(), presets::named("zoom").unwrap()), ..full.clone() };
+        assert_eq!(through_a_file(&filed), full);
+    }
+
+    #[test]
+    fn ghosts_alone_are_the_whole_scene() {
+        let ghost = Ghost { bell: Bell::Gaussian, center: DVec2::ZERO, size: DVec2::ONE, radiance: [1.0; 3] };
+        let look = Look::from_scene(SceneFile { ghosts: vec![ghost.clone()], ..SceneFile::default() }).unwrap();
+        assert_eq!((&look.lights, look.ghosts(&[])), (&LookLights::Listed(Vec::new()), vec![ghost]));
+        assert_eq!(through_a_file(&look), look);
+    }
+
+    #[test]
+    fn an_empty_file_is_the_default_look() {
+        assert_eq!(Look::from_scene(SceneFile::default()).unwrap(), Look::default());
+    }
+}

@@ -1,0 +1,95 @@
+//! What glares in a photo, as a look has it.
+
+use super::{Look, LookLights};
+use crate::choices::Mix;
+use crate::photo::Photo;
+use crate::scene::{self, Found, Ghost, Lens, Light};
+
+/// What glares in one photo.
+pub struct Gathered {
+    /// What was found in the photo, if it was searched.
+    pub found: Option<Found>,
+    /// The lights, found or listed, muted ones too.
+    pub lights: Vec<Light>,
+    /// The lens, if there are lights.
+    pub lens: Option<Lens>,
+    /// Ghosts of the lights, then those that no light makes.
+    pub ghosts: Vec<Ghost>,
+}
+
+impl Look {
+    /// What glares in a photo. It is searched for lights where none are listed, and for the threshold where light is
+    /// taken from it.
+    pub fn gather(&self, photo: &Photo) -> Gathered {
+        let search = self.lights == LookLights::Found || self.mix == Mix::Energy;
+        let found = search.then(|| self.find(photo));
+        let lights = self.lights(found.as_ref().map_or(&[], |found| &found.lights)).to_vec();
+        let lens = (!lights.is_empty()).then(|| self.lens());
+        Gathered { ghosts: self.ghosts(&lights), found, lights, lens }
+    }
+
+    /// Whether there is any glare to be rendered.
+    pub fn renders(&self) -> bool {
+        self.strength != 0.0
+    }
+
+    /// Searches a photo for lights.
+    pub fn find(&self, photo: &Photo) -> Found {
+        scene::find(&photo.pixels, &photo.frame, photo.luminance_weights(), &self.find)
+    }
+
+    /// The ghosts that the lens makes of `lights`, then those that no light makes, in the look's size and tint.
+    pub fn ghosts(&self, lights: &[Light]) -> Vec<Ghost> {
+        let mut ghosts = scene::ghosts(lights, &self.lens(), self.axis);
+        ghosts.extend_from_slice(&self.ghosts);
+        // A look that leaves them alone keeps every bit.
+        if self.size != 1.0 {
+            ghosts = ghosts.into_iter().map(|ghost| ghost.scaled(self.size)).collect();
+        }
+        if self.tint != [1.0; 3] {
+            for ghost in &mut ghosts {
+                for (radiance, tint) in ghost.radiance.iter_mut().zip(self.tint) {
+                    *radiance *= tint;
+                }
+            }
+        }
+        ghosts
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+
+    use super::*;
+    use crate::look::LookLens;
+    use crate::scene::LensGhost;
+    use crate::series::Bell;
+
+    #[test]
+    fn size_keeps_the_flux_of_every_bell_and_tint_scales_it() {
+        for bell in Bell::examples() {
+            let ghost = Ghost { bell, center: DVec2::ONE, size: DVec2::new(0.3, 0.2), radiance: [1.0, -2.0, 3.0] };
+            let look = Look { size: 1.7, tint: [0.5, 1.0, 2.0], ghosts: vec![ghost.clone()], ..Look::default() };
+            let ghosts = look.ghosts(&[]);
+            assert_eq!((ghosts.len(), ghosts[0].size), (1, 1.7 * ghost.size));
+            let expected = [0.5, 1.0, 2.0].iter().zip(ghost.flux()).map(|(tint, flux)| tint * flux);
+            for (actual, expected) in ghosts[0].flux().into_iter().zip(expected) {
+                assert!((actual / expected - 1.0).abs() < 1e-9, "{}: {actual} {expected}", ghost.bell);
+            }
+        }
+    }
+
+    #[test]
+    fn ghosts_are_mirrored_about_the_axis_and_muted_lights_make_none() {
+        let light = Light { position: DVec2::new(0.5, 0.25), flux: [1.0; 3], size: 0.0, muted: false };
+        let (bell, size) = (Bell::Gaussian, DVec2::ONE);
+        let mirror = LensGhost { bell, along: -1.0, size, tint: [1.0; 3], share: 1.0 };
+        let mut look = Look { lens: LookLens::Own(vec![mirror]), axis: DVec2::new(0.25, -0.25), ..Look::default() };
+        let muted = Light { muted: true, ..light };
+        assert_eq!(look.ghosts(&[muted, light]).len(), 1);
+        assert_eq!(look.ghosts(&[light])[0].center, DVec2::new(0.0, -0.75));
+        look.axis = DVec2::ZERO;
+        assert_eq!(look.ghosts(&[light])[0].center, -light.position);
+    }
+}

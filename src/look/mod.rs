@@ -1,0 +1,137 @@
+//! A look: everything that a person sets about a photo's glare, from a command line, a scene file, or by hand.
+
+mod file;
+mod gather;
+
+use std::path::PathBuf;
+
+use glam::DVec2;
+
+use crate::Result;
+use crate::choices::{Evaluator, Mix, Normalize};
+use crate::scene::presets::{self, DEFAULT_PRESET};
+use crate::scene::{FindOptions, Ghost, Goal, Lens, LensGhost, Light};
+
+pub use gather::Gathered;
+
+/// Everything that a person sets. The same look gives the same glare, whatever it was made from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Look {
+    /// One line for people.
+    pub description: String,
+    /// What the lights are seen through.
+    pub lens: LookLens,
+    /// Where the lens's axis meets the picture.
+    pub axis: DVec2,
+    /// What every ghost's size is multiplied by, > 0; its flux stays.
+    pub size: f64,
+    /// What every ghost's colour is multiplied by, RGB, 0 or more.
+    pub tint: [f64; 3],
+    /// What shines.
+    pub lights: LookLights,
+    /// Ghosts that no light makes.
+    pub ghosts: Vec<Ghost>,
+    /// What counts as a light in the photo.
+    pub find: FindOptions,
+    /// What the glare is multiplied by, 0 or more; 0 leaves the photo as it is.
+    pub strength: f64,
+    /// Where the glare's light comes from.
+    pub mix: Mix,
+    /// How the field's values become glare.
+    pub normalize: Normalize,
+    /// How exact the glare is, and how it is computed.
+    pub accuracy: Accuracy,
+}
+
+/// Which lens, and where it is from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LookLens {
+    /// One that comes with vglare, by its name.
+    Preset(Lens),
+    /// That of a lens file.
+    File(PathBuf, Lens),
+    /// A table of the look's own; never empty.
+    Own(Vec<LensGhost>),
+}
+
+/// Where the lights are from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LookLights {
+    /// The photo is searched.
+    Found,
+    /// By hand, or from a file.
+    Listed(Vec<Light>),
+}
+
+/// How exact the glare is, and how it is computed; what is `None` is planned.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Accuracy {
+    /// What the plan is to reach.
+    pub goal: Goal,
+    /// Whether to be as exact as 32-bit floats can, where they cannot be as exact as asked.
+    pub allow_floor: bool,
+    /// Highest harmonic in x and y, 0 to 4096.
+    pub degree: Option<[u32; 2]>,
+    /// Period of the series in x and y, > 0, in half picture heights.
+    pub period: Option<DVec2>,
+    /// How the field is computed.
+    pub evaluator: Option<Evaluator>,
+}
+
+impl Default for Look {
+    /// The lights of the photo through [`DEFAULT_PRESET`], as they are.
+    fn default() -> Self {
+        Self {
+            description: String::new(),
+            lens: LookLens::preset(DEFAULT_PRESET).expect("the default preset is compiled in"),
+            axis: DVec2::ZERO,
+            size: 1.0,
+            tint: [1.0; 3],
+            lights: LookLights::Found,
+            ghosts: Vec::new(),
+            find: FindOptions::default(),
+            strength: 1.0,
+            mix: Mix::default(),
+            normalize: Normalize::default(),
+            accuracy: Accuracy::default(),
+        }
+    }
+}
+
+impl LookLens {
+    /// The preset that is called `name`.
+    ///
+    /// # Errors
+    /// [`crate::Error::UnknownPreset`], which lists the names there are.
+    pub fn preset(name: &str) -> Result<Self> {
+        presets::named(name).map(Self::Preset)
+    }
+
+    /// What it makes of a light.
+    pub fn ghosts(&self) -> &[LensGhost] {
+        match self {
+            Self::Preset(lens) | Self::File(_, lens) => &lens.ghosts,
+            Self::Own(ghosts) => ghosts,
+        }
+    }
+}
+
+impl Look {
+    /// The lens, with its name for people.
+    pub fn lens(&self) -> Lens {
+        match &self.lens {
+            LookLens::Preset(lens) | LookLens::File(_, lens) => lens.clone(),
+            LookLens::Own(ghosts) => {
+                Lens { name: "scene file".to_owned(), description: self.description.clone(), ghosts: ghosts.clone() }
+            }
+        }
+    }
+
+    /// The lights, of which `found` are the photo's.
+    pub fn lights<'a>(&'a self, found: &'a [Light]) -> &'a [Light] {
+        match &self.lights {
+            LookLights::Found => found,
+            LookLights::Listed(lights) => lights,
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! What a scene file says besides what glares: how the glare looks, what counts as a light, and how exact it is to be.
+
+use serde::{Deserialize, Deserializer, Serialize};
+use toml::Spanned;
+
+use super::FindOptions;
+use super::bells::Fault;
+use super::number::{Allowed, IsFraction, IsNotNegative, IsPositive, NotNegative, Number, plain};
+use crate::choices::{Evaluator, Mix, Normalize};
+
+/// `[look]`; what is `None` is left to the command line and its defaults.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LookSection {
+    /// What the glare is multiplied by, 0 or more.
+    #[serde(default, deserialize_with = "number::<_, IsNotNegative>", skip_serializing_if = "Option::is_none")]
+    pub strength: Option<f64>,
+    /// What the size of every ghost is multiplied by, > 0; its flux stays.
+    #[serde(default, deserialize_with = "number::<_, IsPositive>", skip_serializing_if = "Option::is_none")]
+    pub size: Option<f64>,
+    /// What the colour of every ghost is multiplied by, RGB, 0 or more.
+    #[serde(default, deserialize_with = "colour", skip_serializing_if = "Option::is_none")]
+    pub tint: Option<[f64; 3]>,
+    /// Where the glare's light comes from.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mix: Option<Mix>,
+    /// How the field's values become glare.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub normalize: Option<Normalize>,
+}
+
+/// `[find]`; see [`super::FindOptions`].
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FindSection {
+    /// The luminance from which on a pixel is light, 0 or more, in the photo's unit.
+    #[serde(default, deserialize_with = "number::<_, IsNotNegative>", skip_serializing_if = "Option::is_none")]
+    pub threshold: Option<f64>,
+    /// How close regions are that become one light, 0 or more, in half picture heights.
+    #[serde(default, deserialize_with = "number::<_, IsNotNegative>", skip_serializing_if = "Option::is_none")]
+    pub merge: Option<f64>,
+    /// Most lights.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_lights: Option<usize>,
+}
+
+/// `[accuracy]`; period and degree of the series stand at the top of the file.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct AccuracySection {
+    /// What the plan is to reach.
+    pub goal: Option<Goal>,
+    /// Whether to be as exact as 32-bit floats can, where they cannot be as exact as asked.
+    pub allow_floor: bool,
+    /// How the field is computed.
+    pub evaluator: Option<Evaluator>,
+}
+
+/// What a plan is to reach.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Goal {
+    /// The largest error relative to the largest glare of the same colour, between 0 and 1.
+    Tolerance(f64),
+    /// Milliseconds for the spectrum and the field, > 0: be as exact as they allow.
+    Budget(f64),
+}
+
+impl Goal {
+    /// The milliseconds, if it is a budget.
+    pub fn budget(self) -> Option<f64> {
+        match self {
+            Self::Tolerance(_) => None,
+            Self::Budget(budget) => Some(budget),
+        }
+    }
+}
+
+impl Default for Goal {
+    fn default() -> Self {
+        Self::Tolerance(1e-3)
+    }
+}
+
+/// `[accuracy]` as it is written.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct AccuracyTable {
+    tolerance: Option<Number<IsFraction>>,
+    budget: Option<Spanned<Number<IsPositive>>>,
+    #[serde(default)]
+    allow_floor: bool,
+    evaluator: Option<Evaluator>,
+}
+
+impl AccuracyTable {
+    /// What it says, unless it says two things at once.
+    pub fn section(self) -> Result<AccuracySection, Fault> {
+        let Self { tolerance, budget, allow_floor, evaluator } = self;
+        let goal = match (tolerance, budget) {
+            (Some(_), Some(budget)) => {
+                let message = "expected either `tolerance` or `budget`, found both".to_owned();
+                return Err(Fault { span: budget.span(), message });
+            }
+            (Some(tolerance), None) => Some(Goal::Tolerance(tolerance.0)),
+            (None, Some(budget)) => Some(Goal::Budget(budget.into_inner().0)),
+            (None, None) => None,
+        };
+        Ok(AccuracySection { goal, allow_floor, evaluator })
+    }
+}
+
+fn number<'de, D: Deserializer<'de>, R: Allowed>(deserializer: D) -> Result<Option<f64>, D::Error> {
+    Number::<R>::deserialize(deserializer).map(|number| Some(number.0))
+}
+
+fn colour<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<[f64; 3]>, D::Error> {
+    <[NotNegative; 3]>::deserialize(deserializer).map(|numbers| Some(plain(numbers)))
+}
+
+impl FindSection {
+    /// What counts as a light, with the defaults of what is left open.
+    pub fn options(self) -> FindOptions {
+        let default = FindOptions::default();
+        FindOptions {
+            threshold: self.threshold,
+            merge: self.merge.unwrap_or(default.merge),
+            max_lights: self.max_lights.unwrap_or(default.max_lights),
+        }
+    }
+}

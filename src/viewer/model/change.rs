@@ -1,0 +1,96 @@
+//! What has to be done again after a change.
+
+use super::{Look, LookLights};
+use crate::choices::Mix;
+
+/// The first of the steps that have to be done again; all that follow it have to be as well.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Work {
+    /// None: the picture stays as it is.
+    Nothing,
+    /// Lay the field over the photo; the spectrum stays.
+    Composite,
+    /// Plan, for the same ghosts, and compute their spectrum.
+    Plan,
+    /// Make ghosts of the same lights.
+    Ghosts,
+    /// Search the photo for lights, or for the threshold that tells them from the rest.
+    Lights,
+}
+
+/// What has to be done again for the picture of `new`, where that of `old` is there.
+pub fn work(old: &Look, new: &Look) -> Work {
+    let searches = |look: &Look| look.lights == LookLights::Found || look.mix == Mix::Energy;
+    // A search that found lights for `old` is the same for `new`, unless it goes by other rules.
+    if searches(new) && !(searches(old) && old.find == new.find) {
+        return Work::Lights;
+    }
+    match (&old.lights, &new.lights) {
+        (LookLights::Listed(_), LookLights::Found) => return Work::Lights,
+        (old, new) if old != new => return Work::Ghosts,
+        _ => {}
+    }
+    let makes = |look: &Look| (look.axis, look.size, look.tint);
+    if old.lens.ghosts() != new.lens.ghosts() || makes(old) != makes(new) || old.ghosts != new.ghosts {
+        return Work::Ghosts;
+    }
+    if old.accuracy != new.accuracy {
+        return Work::Plan;
+    }
+    let lays = |look: &Look| (look.strength, look.mix, look.normalize);
+    if lays(old) == lays(new) { Work::Nothing } else { Work::Composite }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec2;
+
+    use super::super::{Accuracy, LookLens};
+    use super::*;
+    use crate::choices::{Evaluator, Normalize};
+    use crate::scene::{FindOptions, Ghost, Goal, Light};
+    use crate::series::Bell;
+
+    fn changed(from: &Look, change: impl FnOnce(&mut Look)) -> Work {
+        let mut to = from.clone();
+        change(&mut to);
+        work(from, &to)
+    }
+
+    #[test]
+    fn every_part_of_a_look_has_its_step() {
+        let look = Look::default();
+        let after = |change: fn(&mut Look)| changed(&look, change);
+        assert_eq!(after(|_| {}), Work::Nothing);
+        assert_eq!(after(|look| look.description = "new".into()), Work::Nothing);
+        assert_eq!(after(|look| look.lens = LookLens::Own(look.lens.ghosts().to_vec())), Work::Nothing);
+        assert_eq!(after(|look| look.strength = 0.0), Work::Composite);
+        assert_eq!(after(|look| look.normalize = Normalize::Minmax), Work::Composite);
+        assert_eq!(after(|look| look.mix = Mix::Energy), Work::Composite);
+        assert_eq!(after(|look| look.accuracy.goal = Goal::Budget(5.0)), Work::Plan);
+        assert_eq!(after(|look| look.accuracy.evaluator = Some(Evaluator::Direct)), Work::Plan);
+        assert_eq!(after(|look| look.accuracy = Accuracy { allow_floor: true, ..look.accuracy }), Work::Plan);
+        assert_eq!(after(|look| look.size = 2.0), Work::Ghosts);
+        assert_eq!(after(|look| look.tint = [0.0; 3]), Work::Ghosts);
+        assert_eq!(after(|look| look.axis.x = 0.1), Work::Ghosts);
+        assert_eq!(after(|look| look.lens = LookLens::preset("zoom").unwrap()), Work::Ghosts);
+        assert_eq!(after(|look| look.lights = LookLights::Listed(Vec::new())), Work::Ghosts);
+        let ghost = Ghost { bell: Bell::Gaussian, center: DVec2::ZERO, size: DVec2::ONE, radiance: [1.0; 3] };
+        assert_eq!(changed(&look, |look| look.ghosts.push(ghost)), Work::Ghosts);
+        assert_eq!(after(|look| look.find = FindOptions { merge: 0.5, ..look.find }), Work::Lights);
+    }
+
+    #[test]
+    fn listed_lights_need_no_search_unless_their_light_is_taken_from_the_photo() {
+        let light = Light { position: DVec2::ONE, flux: [1.0; 3], size: 0.0, muted: false };
+        let look = Look { lights: LookLights::Listed(vec![light]), ..Look::default() };
+        let muted = |look: &mut Look| look.lights = LookLights::Listed(vec![Light { muted: true, ..light }]);
+        assert_eq!(changed(&look, muted), Work::Ghosts);
+        assert_eq!(changed(&look, |look| look.find.threshold = Some(2.0)), Work::Nothing);
+        assert_eq!(changed(&look, |look| look.lights = LookLights::Found), Work::Lights);
+        assert_eq!(changed(&look, |look| look.mix = Mix::Energy), Work::Lights);
+        let energy = Look { mix: Mix::Energy, ..look };
+        assert_eq!(changed(&energy, |look| look.find.threshold = Some(2.0)), Work::Lights);
+        assert_eq!(changed(&energy, |look| look.mix = Mix::Add), Work::Composite);
+    }
+}

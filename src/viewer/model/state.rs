@@ -1,0 +1,154 @@
+//! What the window remembers from one time to the next, in the user's state folder: the last look, and the photos that
+//! were opened last.
+
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use etcetera::BaseStrategy as _;
+
+use super::Look;
+use crate::scene::{read_scene, write_scene};
+use crate::{Error, Result, target};
+
+/// Names another folder than the user's state folder.
+pub const FOLDER: &str = "VGLARE_STATE";
+
+/// Most photos in the list.
+pub const MOST_RECENT: usize = 12;
+
+const LOOK: &str = "look.toml";
+const RECENT: &str = "recent.json";
+
+/// The folder.
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    folder: PathBuf,
+}
+
+impl State {
+    /// The user's.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where the user has no home.
+    pub fn of_user() -> Result<Self> {
+        if let Some(folder) = std::env::var_os(FOLDER).filter(|folder| !folder.is_empty()) {
+            return Ok(Self::in_folder(PathBuf::from(folder)));
+        }
+        let strategy = etcetera::choose_base_strategy()
+            .map_err(|reason| Error::Usage(format!("there is no state folder ({reason}); {FOLDER} can name one")))?;
+        // Windows has no folder for state alone.
+        let folder = strategy.state_dir().unwrap_or_else(|| strategy.data_dir());
+        Ok(Self::in_folder(folder.join("vglare")))
+    }
+
+    /// That of another folder, which need not be there.
+    pub fn in_folder(folder: PathBuf) -> Self {
+        Self { folder }
+    }
+
+    /// Keeps a look instead of the one that was kept before.
+    ///
+    /// # Errors
+    /// Those of [`write_scene`], and [`Error::Write`] where the folder cannot be made.
+    pub fn keep_look(&self, look: &Look) -> Result<()> {
+        write_scene(&self.place(LOOK)?, &look.to_scene(), true)
+    }
+
+    /// The look that was kept, if there is one.
+    ///
+    /// # Errors
+    /// Those of [`read_scene`].
+    pub fn look(&self) -> Result<Option<Look>> {
+        let path = self.folder.join(LOOK);
+        if path.exists() { read_scene(&path).and_then(Look::from_scene).map(Some) } else { Ok(None) }
+    }
+
+    /// Puts a photo at the head of the list, which then has it once; the oldest of too many is forgotten. A list that
+    /// cannot be read begins anew.
+    ///
+    /// # Errors
+    /// [`Error::Write`] where the folder cannot be made or the list cannot be written.
+    pub fn opened(&self, photo: &Path) -> Result<()> {
+        let photo = std::path::absolute(photo).unwrap_or_else(|_| photo.to_owned());
+        let mut recent = self.recent().unwrap_or_default();
+        recent.retain(|other| *other != photo);
+        recent.insert(0, photo);
+        recent.truncate(MOST_RECENT);
+        target::write_json(&self.place(RECENT)?, &recent, true)
+    }
+
+    /// The photos that were opened last, the latest first.
+    ///
+    /// # Errors
+    /// [`Error::SceneFile`] where the list is there and cannot be read.
+    pub fn recent(&self) -> Result<Vec<PathBuf>> {
+        let path = self.folder.join(RECENT);
+        let text = match std::fs::read_to_string(&path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+            Err(error) => return Err(Error::scene_file(&path, format_args!("cannot be read: {error}"))),
+        };
+        serde_json::from_str(&text)
+            .map_err(|error| Error::scene_file(&path, format_args!("it is no list of photos ({error})")))
+    }
+
+    /// A file in the folder, which is made if need be.
+    fn place(&self, name: &str) -> Result<PathBuf> {
+        let path = self.folder.join(name);
+        std::fs::create_dir_all(&self.folder).map_err(|reason| Error::write(&path, reason))?;
+        Ok(path)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn state() -> (tempfile::TempDir, State) {
+        let folder = tempfile::tempdir().unwrap();
+        let state = State::in_folder(folder.path().join("made/if/need be"));
+        (folder, state)
+    }
+
+    #[test]
+    fn a_look_is_kept_until_the_next() {
+        let (_folder, state) = state();
+        assert_eq!(state.look().unwrap(), None);
+        for strength in [0.1, 2.0 / 3.0] {
+            let look = Look { strength, ..Look::default() };
+            state.keep_look(&look).unwrap();
+            assert_eq!(state.look().unwrap(), Some(look));
+        }
+        let refused = state.keep_look(&Look { strength: f64::NAN, ..Look::default() });
+        assert!(matches!(refused, Err(Error::SceneFile { .. })));
+        assert_eq!(state.look().unwrap().unwrap().strength, 2.0 / 3.0);
+        std::fs::write(state.folder.join(LOOK), "strength = 1").unwrap();
+        assert!(state.look().unwrap_err().to_string().contains("look.toml: line 1"));
+    }
+
+    #[test]
+    fn photos_are_listed_once_and_the_oldest_are_forgotten() {
+        let (_folder, state) = state();
+        assert_eq!(state.recent().unwrap(), [] as [PathBuf; 0]);
+        let photo = |k: usize| std::path::absolute(format!("{k}.exr")).unwrap();
+        for k in [0, 1, 0] {
+            state.opened(Path::new(&format!("{k}.exr"))).unwrap();
+        }
+        assert_eq!(state.recent().unwrap(), [photo(0), photo(1)]);
+        (0..20).for_each(|k| state.opened(&photo(k)).unwrap());
+        assert_eq!(state.recent().unwrap(), (8..20).rev().map(photo).collect::<Vec<_>>());
+        std::fs::write(state.folder.join(RECENT), "[1]").unwrap();
+        assert!(matches!(state.recent(), Err(Error::SceneFile { .. })));
+        state.opened(&photo(3)).unwrap();
+        assert_eq!(state.recent().unwrap(), [photo(3)]);
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_made_is_an_error() {
+        let (folder, _) = state();
+        std::fs::write(folder.path().join("file"), "").unwrap();
+        let state = State::in_folder(folder.path().join("file/state"));
+        assert!(matches!(state.keep_look(&Look::default()), Err(Error::Write { .. })));
+        assert!(matches!(state.opened(Path::new("a.exr")), Err(Error::Write { .. })));
+    }
+}
