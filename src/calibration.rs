@@ -16,7 +16,7 @@ pub const FOLDER: &str = "VGLARE_CACHE";
 const FILE: &str = "calibration.json";
 
 /// What is known of a renderer's speed.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Known {
     /// The model that was measured, or the built-in one.
     pub model: CostModel,

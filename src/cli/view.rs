@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use crate::scene::presets::{self, DEFAULT_PRESET};
+use crate::look::{Look, LookLens};
+use crate::scene::presets::DEFAULT_PRESET;
+use crate::scene::read_scene;
 use crate::{Result, viewer};
 
 /// Open photos in a window, where the glare can be set by hand and seen at once
@@ -16,14 +18,22 @@ pub struct Args {
     photos: Vec<PathBuf>,
 
     /// The lens that photos are opened with, one of `vglare presets`
-    #[arg(long, value_name = "NAME", default_value = DEFAULT_PRESET)]
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_PRESET, conflicts_with = "scene")]
     preset: String,
+
+    /// The look that photos are opened with, as a scene file; see docs/scenes.md
+    #[arg(long, value_name = "FILE")]
+    scene: Option<PathBuf>,
 }
 
 /// Shows the window until it is closed.
 ///
 /// # Errors
-/// Those of [`viewer::run`], and that of an unknown preset.
+/// Those of [`viewer::run`], that of an unknown preset, and those of [`read_scene`].
 pub fn run(args: &Args) -> Result<()> {
-    viewer::run(&args.photos, presets::named(&args.preset)?)
+    let look = match &args.scene {
+        Some(path) => Look::from_scene(read_scene(path)?)?,
+        None => Look { lens: LookLens::preset(&args.preset)?, ..Look::default() },
+    };
+    viewer::run(&args.photos, look)
 }

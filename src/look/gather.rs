@@ -21,11 +21,19 @@ impl Look {
     /// What glares in a photo. It is searched for lights where none are listed, and for the threshold where light is
     /// taken from it.
     pub fn gather(&self, photo: &Photo) -> Gathered {
-        let search = self.lights == LookLights::Found || self.mix == Mix::Energy;
-        let found = search.then(|| self.find(photo));
+        self.gather_from(self.searches().then(|| self.find(photo)))
+    }
+
+    /// What glares in a photo of which `found` is known.
+    pub fn gather_from(&self, found: Option<Found>) -> Gathered {
         let lights = self.lights(found.as_ref().map_or(&[], |found| &found.lights)).to_vec();
         let lens = (!lights.is_empty()).then(|| self.lens());
         Gathered { ghosts: self.ghosts(&lights), found, lights, lens }
+    }
+
+    /// Whether a photo is to be searched: for lights, or for the threshold that tells them from the rest.
+    pub fn searches(&self) -> bool {
+        self.lights == LookLights::Found || self.mix == Mix::Energy
     }
 
     /// Whether there is any glare to be rendered.

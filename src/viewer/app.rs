@@ -9,13 +9,15 @@ use egui::{Align, CentralPanel, Color32, Layout, Panel, RawInput, RichText, Ui};
 use super::canvas::{self, Canvas, Probe};
 use super::document::Document;
 use super::loader::{Loader, Wake};
+use super::model::{Look, Work, work};
 use super::shortcuts::{self, Command};
 use super::stage::{Counts, Stage};
+use super::task::{State, Task};
 use super::{control, panels, viewing};
 use crate::Result;
 use crate::gpu::paint::Painter;
 use crate::gpu::{Device, Screen};
-use crate::scene::Lens;
+use crate::scene::{FindOptions, Found};
 
 /// Milliseconds of plan, spectrum and composite from which on a drag is shown by previews.
 const SLOW: f64 = 33.0;
@@ -28,7 +30,9 @@ pub struct App {
     painter: Painter,
     stage: Stage,
     loader: Loader,
-    lens: Lens,
+    wake: Wake,
+    look: Look,
+    search: Option<Search>,
     documents: Vec<(u64, Document)>,
     current: usize,
     next: u64,
@@ -40,6 +44,13 @@ pub struct App {
     cost: f64,
 }
 
+/// A search for lights: of which document, by which rules.
+struct Search {
+    document: u64,
+    options: FindOptions,
+    task: Task<Found>,
+}
+
 /// What came of a frame.
 pub struct Shown {
     /// When the next frame is due, unless something happens before.
@@ -49,12 +60,12 @@ pub struct Shown {
 }
 
 impl App {
-    /// An app with nothing open, on a device that is current. Photos open with `lens`; `wake` is called from other
+    /// An app with nothing open, on a device that is current. Photos open with `look`; `wake` is called from other
     /// threads when a frame is wanted.
     ///
     /// # Errors
     /// [`crate::Error::Gl`] where the driver refuses.
-    pub fn new(device: &Rc<Device>, lens: Lens, wake: Wake) -> Result<Self> {
+    pub fn new(device: &Rc<Device>, look: Look, wake: Wake) -> Result<Self> {
         let context = egui::Context::default();
         let by_egui = wake.clone();
         context.set_request_repaint_callback(move |asked| {
@@ -67,8 +78,10 @@ impl App {
             context,
             painter: Painter::new(device)?,
             stage: Stage::new(device)?,
-            loader: Loader::new(wake),
-            lens,
+            loader: Loader::new(wake.clone()),
+            wake,
+            look,
+            search: None,
             documents: Vec::new(),
             current: 0,
             next: 0,
@@ -82,7 +95,7 @@ impl App {
 
     /// Begins to open a photo; it is shown when it has been read.
     pub fn open(&mut self, path: PathBuf) {
-        self.loader.read(path, self.lens.clone());
+        self.loader.read(path, self.look.clone());
     }
 
     /// Whether files are being read.
@@ -110,6 +123,11 @@ impl App {
     /// What went wrong and was not dismissed yet.
     pub fn notices(&self) -> &[String] {
         &self.notices
+    }
+
+    /// Why there is no picture of the look as it is set, if so.
+    pub fn problem(&self) -> Option<&str> {
+        self.stage.problem()
     }
 
     /// Where the picture lay on the screen in the last frame.
@@ -149,15 +167,14 @@ impl App {
     pub fn frame(&mut self, input: RawInput, screen: &Screen) -> Result<Shown> {
         self.take_in();
         let context = self.context.clone();
-        let before = self.document().map(|document| document.look.optics());
+        let before = self.document().map(Document::known_look);
         let mut output = context.run_ui(input, |ui| self.ui(ui, screen));
-        if before != self.document().map(|document| document.look.optics()) {
-            self.moved = context.time();
-        }
+        self.settle(before);
         screen.clear(opaque(context.global_style().visuals.extreme_bg_color));
         let again = self.draw(screen).unwrap_or_else(|error| {
+            let told = self.notices.len();
             self.notice(error.to_string());
-            Duration::ZERO
+            if self.notices.len() > told { Duration::ZERO } else { Duration::MAX }
         });
         let shapes = context.tessellate(output.shapes, output.pixels_per_point);
         self.painter.paint(screen, output.pixels_per_point, &shapes, &mut output.textures_delta);
@@ -171,6 +188,40 @@ impl App {
             match result {
                 Ok(document) => self.add(document),
                 Err(error) => self.notice(error.to_string()),
+            }
+        }
+        if let Some(Search { document, options, task }) = self.search.take() {
+            match task.poll() {
+                State::Running => self.search = Some(Search { document, options, task }),
+                State::Failed => self.notice("the search for lights failed".into()),
+                State::Done(found) => {
+                    let searched = self.documents.iter_mut().find(|(number, _)| *number == document);
+                    if let Some((_, document)) = searched {
+                        document.set_found(options, found);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Makes what a frame has changed a step of the history, and begins the search that it asks for.
+    fn settle(&mut self, before: Option<Look>) {
+        // What is dragged, typed or held down is one change.
+        let input = |input: &egui::InputState| input.pointer.any_down() || !input.keys_down.is_empty();
+        let gesture = self.context.input(input) || self.context.text_edit_focused();
+        let Some((number, document)) = self.documents.get_mut(self.current) else { return };
+        document.record(gesture);
+        if before.is_none_or(|before| work(&before, &document.known_look()) >= Work::Plan) {
+            self.moved = self.context.time();
+        }
+        if self.search.is_none() && document.wants_search() {
+            let (look, photo) = (document.look.clone(), document.photo.clone());
+            let task = Task::start("search", &self.wake, move || look.find(&photo));
+            match task {
+                Ok(task) => {
+                    self.search = Some(Search { document: *number, options: document.look.find, task });
+                }
+                Err(error) => self.notice(format!("the photo cannot be searched: {error}")),
             }
         }
     }
@@ -188,6 +239,7 @@ impl App {
         let still = self.context.time() - self.moved;
         let preview = self.cost > SLOW && still < SETTLED && self.context.egui_is_using_pointer();
         let done = self.stage.counts();
+        let problem = self.stage.problem().is_some();
         self.stage.update(*number, document, preview)?;
         if !preview && self.stage.counts().spectra > done.spectra {
             let times = self.stage.times();
@@ -196,6 +248,9 @@ impl App {
         let surround = opaque(self.context.global_style().visuals.extreme_bg_color);
         self.stage.show(document, &placement, surround, screen)?;
         let mut again = if preview { Duration::from_secs_f64(SETTLED - still) } else { Duration::MAX };
+        if problem != self.stage.problem().is_some() {
+            again = Duration::ZERO;
+        }
         if let Some(loupe) = self.canvas.loupe {
             self.stage.magnify(document, loupe.center, loupe.side, loupe.before, screen, loupe.region)?;
             let [column, row] = loupe.pixel;
@@ -271,6 +326,14 @@ impl App {
                         self.loader.cancel();
                     }
                 });
+            });
+        }
+        if let Some(problem) = self.stage.problem() {
+            Panel::bottom("problem").show(ui, |ui| {
+                ui.label(
+                    RichText::new(format!("The picture is of a look before: {problem}"))
+                        .color(ui.visuals().warn_fg_color),
+                );
             });
         }
         let mut dismissed = None;

@@ -3,7 +3,7 @@
 
 use std::ops::RangeInclusive;
 
-use egui::{DragValue, Label, Response, Sense, Slider, Ui};
+use egui::{DragValue, Label, Response, Sense, Slider, SliderClamping, Ui};
 
 /// Where [`App::control`](super::App::control) finds a control's slider.
 pub fn place(name: &str) -> egui::Id {
@@ -33,10 +33,13 @@ impl Number {
             let slider = Slider::new(value, self.range.clone())
                 .show_value(false)
                 .logarithmic(self.logarithmic)
+                // What a file says beyond the range stays until it is set here.
+                .clamping(SliderClamping::Edits)
                 .smallest_positive(1e-3);
             let rail = ui.add(slider);
             let speed = (self.range.end() - self.range.start()) / 500.0;
-            let number = DragValue::new(value).range(self.range.clone()).speed(speed).max_decimals(6);
+            let number = DragValue::new(value).range(self.range.clone()).clamp_existing_to_range(false);
+            let number = number.speed(speed).max_decimals(6);
             let number = ui.add(number);
             if name.double_clicked() {
                 *value = reset;

@@ -1,16 +1,16 @@
 //! A photo that is open: the pixels that are shown, its look, and how it is looked at.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use glam::{DMat3, DVec2};
 
-use super::look::Look;
+use super::model::{History, Look};
 use super::viewing::Viewing;
 use crate::Result;
 use crate::frame::{Frame, Window};
 use crate::photo::{self, Photo};
-use crate::renderer::Settings;
-use crate::scene::{self, FindOptions, Lens};
+use crate::scene::{FindOptions, Found, Light};
 
 /// The most pixels that are computed live: one tile of the renderer's, 4 Mpx.
 ///
@@ -22,23 +22,27 @@ pub const LIVE_PIXELS: usize = 4 << 20;
 pub struct Document {
     /// Its file.
     pub path: PathBuf,
-    /// Columns and rows in the file.
-    pub size: [u32; 2],
+    /// The whole of it, as it was read.
+    pub photo: Arc<Photo>,
     /// The frame of the pixels that are shown.
     pub frame: Frame,
-    /// The pixels that are shown, linear RGBA, row by row from the top.
-    pub pixels: Vec<[f32; 4]>,
-    /// The side of the square of the file's pixels whose mean is one of `pixels`.
+    /// The side of the square of the file's pixels whose mean is one that is shown.
     pub shrunk: u32,
+    /// The means, where they are not the file's own pixels.
+    means: Option<Vec<[f32; 4]>>,
     /// From its primaries to Rec.709's, where they differ.
     pub gamut: Option<DMat3>,
-    /// What is set.
+    /// What was found in it, and by which rules.
+    pub found: Found,
+    pub searched: FindOptions,
+    /// What is set; a change becomes a step of the history by [`Document::record`].
     pub look: Look,
+    history: History,
     /// What was set when it was opened.
     pub opened: Look,
     /// How it is looked at.
     pub viewing: Viewing,
-    /// The lamp that is selected.
+    /// The light that is selected.
     pub selected: Option<usize>,
 }
 
@@ -47,32 +51,106 @@ impl Document {
     ///
     /// # Errors
     /// Those of [`photo::read`].
-    pub fn read(path: &Path, lens: Lens) -> Result<Self> {
-        Ok(Self::new(path, photo::read(path)?, lens))
+    pub fn read(path: &Path, look: Look) -> Result<Self> {
+        Ok(Self::new(path, photo::read(path)?, look))
     }
 
     /// An open photo.
-    pub fn new(path: &Path, photo: Photo, lens: Lens) -> Self {
-        let weights = photo.luminance_weights();
-        let found = scene::find(&photo.pixels, &photo.frame, weights, &FindOptions::default());
-        let look = Look::new(&found.lights, lens, Settings { luminance: weights, ..Settings::default() });
-        let gamut = photo.to_rec709();
-        let size = [photo.width(), photo.height()];
+    pub fn new(path: &Path, photo: Photo, look: Look) -> Self {
         let shrunk = side(photo.frame.window, LIVE_PIXELS);
-        let (frame, pixels) = shrink(photo, shrunk);
-        let (viewing, selected) = (Viewing::default(), None);
+        let (frame, means) = match shrunk {
+            1 => (photo.frame, None),
+            side => shrink(&photo, side),
+        };
         Self {
             path: path.to_owned(),
-            size,
+            gamut: photo.to_rec709(),
+            found: look.find(&photo),
+            searched: look.find,
+            photo: Arc::new(photo),
             frame,
-            pixels,
             shrunk,
-            gamut,
+            means,
+            history: History::new(look.clone()),
             opened: look.clone(),
             look,
-            viewing,
-            selected,
+            viewing: Viewing::default(),
+            selected: None,
         }
+    }
+
+    /// The pixels that are shown, linear RGBA, row by row from the top.
+    pub fn pixels(&self) -> &[[f32; 4]] {
+        self.means.as_ref().unwrap_or(&self.photo.pixels)
+    }
+
+    /// The lights, found or listed, muted ones too.
+    pub fn lights(&self) -> &[Light] {
+        self.look.lights(&self.found.lights)
+    }
+
+    /// The lights as a list to be edited.
+    pub fn lights_mut(&mut self) -> &mut Vec<Light> {
+        self.look.lights_mut(&self.found.lights)
+    }
+
+    /// Takes a light away.
+    pub fn delete_light(&mut self, index: usize) {
+        self.look.delete_light(&self.found.lights, index);
+        self.selected = None;
+    }
+
+    /// What is set, as far as it is known what it means: while the photo is searched anew, with the search before.
+    pub fn known_look(&self) -> Look {
+        Look { find: self.searched, ..self.look.clone() }
+    }
+
+    /// Whether the photo has to be searched anew.
+    pub fn wants_search(&self) -> bool {
+        self.look.searches() && self.look.find != self.searched
+    }
+
+    /// Takes over what a search found.
+    pub fn set_found(&mut self, searched: FindOptions, found: Found) {
+        (self.searched, self.found) = (searched, found);
+        self.drop_selection();
+    }
+
+    /// Makes what has changed since a step of the history. While a gesture goes on, its changes are one step.
+    pub fn record(&mut self, gesture: bool) {
+        if gesture && self.look != *self.history.look() {
+            self.history.begin();
+        }
+        self.history.set(self.look.clone());
+        if !gesture {
+            self.history.commit();
+        }
+    }
+
+    /// Goes a step back.
+    pub fn undo(&mut self) {
+        self.record(false);
+        self.history.undo();
+        self.look.clone_from(self.history.look());
+        self.drop_selection();
+    }
+
+    /// Goes forward again.
+    pub fn redo(&mut self) {
+        self.record(false);
+        self.history.redo();
+        self.look.clone_from(self.history.look());
+        self.drop_selection();
+    }
+
+    /// Whether there is a step to undo, and one to redo.
+    pub fn steps(&self) -> [bool; 2] {
+        [self.history.can_undo(), self.history.can_redo()]
+    }
+
+    fn drop_selection(&mut self) {
+        let count = self.lights().len();
+        self.selected = self.selected.filter(|&index| index < count);
     }
 
     /// The file's name, without its folder.
@@ -110,11 +188,8 @@ fn shrunk(window: Window, side: u32) -> Window {
 }
 
 /// The means of squares of pixels; what does not fill a square at the right and at the bottom is left out.
-fn shrink(photo: Photo, side: u32) -> (Frame, Vec<[f32; 4]>) {
+fn shrink(photo: &Photo, side: u32) -> (Frame, Option<Vec<[f32; 4]>>) {
     let from = photo.frame.window;
-    if side == 1 {
-        return (photo.frame, photo.pixels);
-    }
     let to = shrunk(from, side);
     let frame = Frame { width: (photo.width() / side).max(1), height: (photo.height() / side).max(1), window: to };
     let stride = from.width as usize;
@@ -134,40 +209,56 @@ fn shrink(photo: Photo, side: u32) -> (Frame, Vec<[f32; 4]>) {
     };
     let (width, height) = (to.width as usize, to.height as usize);
     let pixels = (0..height).flat_map(|row| (0..width).map(move |column| (row, column)));
-    (frame, pixels.map(|(row, column)| mean(row, column)).collect())
+    (frame, Some(pixels.map(|(row, column)| mean(row, column)).collect()))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::presets;
-
-    fn lens() -> Lens {
-        presets::named(presets::DEFAULT_PRESET).unwrap()
-    }
 
     #[test]
     fn a_large_photo_is_shown_by_means_of_squares() {
         let pixels = (0..12 * 6).map(|i| [(i % 12) as f32, (i / 12) as f32, 1.0, 1.0]).collect();
         let photo = Photo::new(12, 6, pixels);
         assert_eq!((side(photo.frame.window, 72), side(photo.frame.window, 71)), (1, 2));
-        let (frame, pixels) = shrink(photo, 3);
+        let (frame, pixels) = shrink(&photo, 3);
+        let pixels = pixels.unwrap();
         assert_eq!((frame, pixels.len()), (Frame::full(4, 2), 8));
         assert!(pixels[1].iter().zip([4.0, 1.0, 1.0, 1.0]).all(|(got, want)| (got - want).abs() < 1e-5), "{pixels:?}");
     }
 
     #[test]
     fn a_strip_is_shrunk_without_vanishing() {
-        let (frame, pixels) = shrink(Photo::new(9, 1, vec![[2.0; 4]; 9]), 4);
+        let (frame, pixels) = shrink(&Photo::new(9, 1, vec![[2.0; 4]; 9]), 4);
+        let pixels = pixels.unwrap();
         assert_eq!((frame.window.width, frame.window.height, pixels.len()), (2, 1, 2));
         assert!(pixels.iter().flatten().all(|value| (value - 2.0).abs() < 1e-6));
     }
 
     #[test]
     fn place_and_position_undo_each_other() {
-        let document = Document::new(Path::new("a.exr"), Photo::new(8, 4, vec![[0.5; 4]; 32]), lens());
+        let document = Document::new(Path::new("a.exr"), Photo::new(8, 4, vec![[0.5; 4]; 32]), Look::default());
         assert_eq!(document.place(DVec2::ZERO), DVec2::new(4.0, 2.0));
         let at = DVec2::new(-1.25, 7.5);
         assert!((document.place(document.position(at)) - at).length() < 1e-12);
+    }
+
+    #[test]
+    fn a_gesture_is_one_step_and_an_edit_lists_the_lights() {
+        let mut document = Document::new(Path::new("a.exr"), Photo::new(2, 1, vec![[0.5; 4]; 2]), Look::default());
+        for strength in [2.0, 3.0, 4.0] {
+            document.look.strength = strength;
+            document.record(true);
+        }
+        document.record(false);
+        document.lights_mut().clear();
+        document.record(false);
+        assert_eq!(document.steps(), [true, false]);
+        document.undo();
+        assert_eq!((document.look.strength, document.look.searches()), (4.0, true));
+        document.undo();
+        assert_eq!((&document.look, document.steps()), (&document.opened, [false, true]));
+        document.redo();
+        assert_eq!(document.look.strength, 4.0);
     }
 }

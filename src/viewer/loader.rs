@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use super::document::Document;
-use crate::scene::Lens;
+use super::model::Look;
 use crate::{Error, Result};
 
 /// Tells the event loop that something has come in.
@@ -28,13 +28,13 @@ impl Loader {
     }
 
     /// Begins to read a photo.
-    pub fn read(&mut self, path: PathBuf, lens: Lens) {
+    pub fn read(&mut self, path: PathBuf, look: Look) {
         let (number, sender, wake) = (self.next, self.sender.clone(), self.wake.clone());
         self.next += 1;
         self.under_way.push((number, path.clone()));
         let work = move || {
             // The other end is gone only when the window is.
-            let _ = sender.send((number, Document::read(&path, lens)));
+            let _ = sender.send((number, Document::read(&path, look)));
             wake();
         };
         if let Err(reason) = std::thread::Builder::new().name("photo".into()).spawn(work) {

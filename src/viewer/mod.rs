@@ -5,11 +5,11 @@
 //! | `window` | winit's events, the surface, when to draw; nothing else knows of a window |
 //! | `app` | [`App`]: what is open, and one frame of it, with or without a window |
 //! | `document` | an open photo: its pixels, its look, how it is looked at |
-//! | `look` | what a person sets of the glare |
-//! | `model` | looks that are saved, their history, their command line; no egui, no GL |
+//! | `model` | what a person sets of the glare: looks, their history, their command line; no egui, no GL |
 //! | `viewing` | what a person sets of the view, and where pixels lie on the screen for it |
 //! | `stage` | the picture on the device; computes what has changed, and nothing else |
 //! | `loader` | files, read in the background |
+//! | `task` | other work in the background |
 //! | `canvas` | the picture under the pointer: moving, magnifying, the lights' handles, the loupe |
 //! | `panels` | the controls, one file a panel |
 //! | `control` | what every control has: a name, a unit, a range, a way back |
@@ -23,18 +23,17 @@ mod canvas;
 mod control;
 mod document;
 mod loader;
-mod look;
 pub mod model;
 mod panels;
 mod shortcuts;
 mod stage;
+mod task;
 mod viewing;
 mod window;
 
 pub use app::{App, Shown};
 pub use document::{Document, LIVE_PIXELS};
 pub use loader::Wake;
-pub use look::{Lamp, Look};
 pub use stage::{Counts, Times};
 pub use viewing::{Placement, Shows, Viewing, Zoom};
 pub use window::run;

@@ -8,7 +8,7 @@ use super::viewing::{MOST_EXPOSURE, Placement, Shows, Zoom};
 use crate::photo::ToneMap;
 
 /// Keys and what they do, for the list that a person can read.
-pub const KEYS: [(&str, &str); 12] = [
+pub const KEYS: [(&str, &str); 13] = [
     ("F, 1", "fit the photo to the window; a pixel to a pixel"),
     ("+, −", "magnify, make smaller"),
     ("B", "the photo as it was, and back"),
@@ -20,6 +20,7 @@ pub const KEYS: [(&str, &str); 12] = [
     ("T", "the next tone map"),
     ("arrows", "move the selected light by a pixel of the photo, with Shift by ten"),
     ("M, Delete", "mute, delete the selected light"),
+    ("Ctrl+Z, Ctrl+Shift+Z", "undo; redo, as Ctrl+Y does"),
     ("Ctrl+Tab, Ctrl+W", "the next photo; close this one"),
 ];
 
@@ -56,8 +57,15 @@ pub fn apply(context: &Context, document: &mut Document, placement: Option<&Plac
     if pressed(Key::I) {
         viewing.loupe = !viewing.loupe;
     }
-    lamp(context, document, &pressed);
-    let command = |key| context.input_mut(|input| input.consume_key(Modifiers::CTRL, key));
+    light(context, document, &pressed);
+    let with = |modifiers, key| context.input_mut(|input| input.consume_key(modifiers, key));
+    if with(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z) || with(Modifiers::COMMAND, Key::Y) {
+        document.redo();
+    }
+    if with(Modifiers::COMMAND, Key::Z) {
+        document.undo();
+    }
+    let command = |key| with(Modifiers::COMMAND, key);
     if command(Key::Tab) {
         return Some(Command::Next);
     }
@@ -95,10 +103,9 @@ fn look_at(document: &mut Document, placement: Option<&Placement>, pressed: &dyn
     }
 }
 
-fn lamp(context: &Context, document: &mut Document, pressed: &dyn Fn(Key) -> bool) {
-    let Some(selected) = document.selected.filter(|&index| index < document.look.lamps.len()) else { return };
+fn light(context: &Context, document: &mut Document, pressed: &dyn Fn(Key) -> bool) {
+    let Some(selected) = document.selected.filter(|&index| index < document.lights().len()) else { return };
     let pixel = document.frame.pixel_size();
-    let lamp = &mut document.look.lamps[selected];
     let arrows = [
         (Key::ArrowLeft, DVec2::NEG_X),
         (Key::ArrowRight, DVec2::X),
@@ -110,16 +117,16 @@ fn lamp(context: &Context, document: &mut Document, pressed: &dyn Fn(Key) -> boo
         for (key, way) in arrows {
             for (modifiers, pixels) in [(Modifiers::SHIFT, 10.0), (Modifiers::NONE, 1.0)] {
                 if context.input_mut(|input| input.consume_key(modifiers, key)) {
-                    lamp.light.position += way * pixels * pixel;
+                    document.lights_mut()[selected].position += way * pixels * pixel;
                 }
             }
         }
     }
     if pressed(Key::M) {
-        lamp.muted = !lamp.muted;
+        let light = &mut document.lights_mut()[selected];
+        light.muted = !light.muted;
     }
     if pressed(Key::Delete) {
-        document.look.lamps.remove(selected);
-        document.selected = None;
+        document.delete_light(selected);
     }
 }

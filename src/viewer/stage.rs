@@ -6,13 +6,15 @@ use std::time::Instant;
 use glam::DVec2;
 
 use super::document::Document;
-use super::look::Optics;
+use super::model::{self, Accuracy, Look, Work};
 use super::viewing::{Placement, Shows};
-use crate::Result;
 use crate::gpu::{Device, Region, Screen};
-use crate::plan::{self, Plan, Request};
+use crate::job::{self, Known};
+use crate::look::Gathered;
+use crate::plan::Plan;
 use crate::renderer::{Renderer, Settings, View};
-use crate::scene::Ghost;
+use crate::scene::Goal;
+use crate::{Error, Result};
 
 /// The tolerance of a preview, unless the look's own is coarser: half a code of an 8-bit display is 2e-3 of white.
 const PREVIEW_TOLERANCE: f64 = 1e-2;
@@ -45,15 +47,21 @@ pub struct Times {
 #[derive(Default)]
 struct Made {
     document: Option<u64>,
-    field: Option<(Optics, f64)>,
+    scene: Option<Gathered>,
+    /// The look of the field, as it was planned for.
+    look: Option<Look>,
     picture: Option<(Settings, Shows)>,
+    /// A look that there is no picture of, and why.
+    refused: Option<(Look, String)>,
+    preview: bool,
 }
 
 /// Renders the current document.
 pub struct Stage {
     renderer: Renderer,
     made: Made,
-    ghosts: Vec<Ghost>,
+    /// What `vglare calibrate` measured on this device.
+    known: Known,
     plan: Option<Plan>,
     counts: Counts,
     times: Times,
@@ -68,7 +76,7 @@ impl Stage {
         Ok(Self {
             renderer: Renderer::new(device)?,
             made: Made::default(),
-            ghosts: Vec::new(),
+            known: Known::of(device.info()),
             plan: None,
             counts: Counts::default(),
             times: Times::default(),
@@ -76,14 +84,15 @@ impl Stage {
     }
 
     /// Brings the picture up to date; `number` tells documents apart. A preview may be coarser than the look asks for.
+    /// Where there is no plan for the look, [`Stage::problem`] says why, and what was there stays.
     ///
     /// # Errors
-    /// Those of [`plan::plan_at_least`], and [`crate::Error::Gl`] where the driver refuses. What was there stays.
+    /// [`crate::Error::Gl`] where the driver refuses.
     pub fn update(&mut self, number: u64, document: &Document, preview: bool) -> Result<()> {
         if self.made.document != Some(number) {
             self.made = Made::default();
             self.renderer.forget_scene();
-            self.renderer.load(document.frame, &document.pixels)?;
+            self.renderer.load(document.frame, document.pixels())?;
             self.counts.uploads += 1;
             self.made.document = Some(number);
         }
@@ -91,8 +100,36 @@ impl Stage {
         if shows == Shows::Photo {
             return Ok(());
         }
-        self.update_field(document, preview)?;
-        if self.made.picture == Some((document.look.settings, shows)) {
+        let look = wanted(document, preview);
+        if self.made.refused.as_ref().is_some_and(|(refused, _)| *refused == look) {
+            return Ok(());
+        }
+        self.made.refused = None;
+        match self.render(document, &look, shows) {
+            Err(error @ Error::Gl(_)) => return Err(error),
+            Err(error) => self.made.refused = Some((look, error.to_string())),
+            Ok(()) => self.made.preview = preview,
+        }
+        Ok(())
+    }
+
+    /// Does again what a look that has changed asks for.
+    fn render(&mut self, document: &Document, look: &Look, shows: Shows) -> Result<()> {
+        let work = self.made.look.as_ref().map_or(Work::Lights, |made| model::work(made, look));
+        if work >= Work::Plan {
+            // Until all of it is done, what is there is of no look.
+            self.made.look = None;
+        }
+        if work >= Work::Ghosts {
+            self.made.scene = Some(look.gather_from(Some(document.found.clone())));
+        }
+        let Some(scene) = &self.made.scene else { return Ok(()) };
+        let (settings, _) = job::settings(look, &document.photo, scene)?;
+        if work >= Work::Plan {
+            self.update_field(document, look)?;
+        }
+        self.made.look = Some(look.clone());
+        if self.made.picture == Some((settings, shows)) {
             return Ok(());
         }
         let started = Instant::now();
@@ -101,42 +138,27 @@ impl Stage {
             self.renderer.hold_field(document.frame)?;
         }
         match shows {
-            Shows::Glare => self.renderer.draw_glare(document.frame, &document.look.settings)?,
-            Shows::Picture | Shows::Photo => self.renderer.draw(document.frame, &document.look.settings)?,
+            Shows::Glare => self.renderer.draw_glare(document.frame, &settings)?,
+            Shows::Picture | Shows::Photo => self.renderer.draw(document.frame, &settings)?,
         }
         self.times.composite = self.elapsed(started);
         self.counts.composites += 1;
-        self.made.picture = Some((document.look.settings, shows));
+        self.made.picture = Some((settings, shows));
         Ok(())
     }
 
-    fn update_field(&mut self, document: &Document, preview: bool) -> Result<()> {
-        let look = &document.look;
-        let tolerance = if preview { look.tolerance.max(PREVIEW_TOLERANCE) } else { look.tolerance };
-        let wanted = (look.optics(), tolerance);
-        if self.made.field.as_ref() == Some(&wanted) {
-            return Ok(());
-        }
-        if self.made.field.as_ref().is_none_or(|(optics, _)| *optics != wanted.0) {
-            self.ghosts = wanted.0.ghosts();
-        }
+    /// Plans as `vglare apply` does, and computes the spectrum.
+    fn update_field(&mut self, document: &Document, look: &Look) -> Result<()> {
+        let Some(scene) = &self.made.scene else { return Ok(()) };
         let started = Instant::now();
-        let info = self.renderer.device().info();
-        let unlimited = Request::new(document.frame, tolerance);
-        let request = Request {
-            loop_rounds: info.loop_rounds().unwrap_or(usize::MAX),
-            // A term takes three vec4.
-            most_terms: (info.limits.storage_block / 48) as usize,
-            ..unlimited
-        };
-        let plan = plan::plan_at_least(&self.ghosts, &request)?;
+        let device = self.renderer.device().info();
+        let planned = job::plan(&look.accuracy, &scene.ghosts, document.frame, Some(device), self.known.clone())?;
         self.times.plan = started.elapsed().as_secs_f64() * 1e3;
         let started = Instant::now();
-        self.renderer.set_scene(&self.ghosts, &plan)?;
+        self.renderer.set_scene(&scene.ghosts, &planned.plan)?;
         self.times.spectrum = self.elapsed(started);
         self.counts.spectra += 1;
-        self.plan = Some(plan);
-        self.made.field = Some(wanted);
+        self.plan = Some(planned.plan);
         self.made.picture = None;
         Ok(())
     }
@@ -163,6 +185,7 @@ impl Stage {
         let width = f64::from(placement.region.width);
         let wipe = match (document.viewing.shows, document.viewing.wipe) {
             (Shows::Photo, _) => width,
+            _ if self.made.picture.is_none() => width,
             (_, Some(wipe)) => wipe * width,
             (_, None) => 0.0,
         };
@@ -213,9 +236,14 @@ impl Stage {
         self.plan.as_ref()
     }
 
-    /// Whether the picture on the device is coarser than the document's look asks for.
-    pub fn is_preview(&self, document: &Document) -> bool {
-        self.made.field.as_ref().is_some_and(|(_, tolerance)| *tolerance > document.look.tolerance)
+    /// Whether the picture on the device is coarser than its look asks for.
+    pub fn is_preview(&self) -> bool {
+        self.made.preview
+    }
+
+    /// Why there is no picture of the look that was asked for last; that on the device is of another then.
+    pub fn problem(&self) -> Option<&str> {
+        self.made.refused.as_ref().map(|(_, reason)| reason.as_str())
     }
 
     /// How often each kind of work was done.
@@ -227,6 +255,20 @@ impl Stage {
     pub fn times(&self) -> Times {
         self.times
     }
+}
+
+/// The look that is to be rendered.
+fn wanted(document: &Document, preview: bool) -> Look {
+    let mut look = document.known_look();
+    if preview {
+        let tolerance = match look.accuracy.goal {
+            Goal::Tolerance(tolerance) => tolerance.max(PREVIEW_TOLERANCE),
+            Goal::Budget(_) => PREVIEW_TOLERANCE,
+        };
+        let goal = Goal::Tolerance(tolerance);
+        look.accuracy = Accuracy { goal, allow_floor: true, ..look.accuracy };
+    }
+    look
 }
 
 /// A document without surroundings, the picture from the first column on.

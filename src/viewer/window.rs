@@ -11,24 +11,24 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy};
 use winit::window::{Window, WindowId};
 
 use super::app::App;
+use super::model::Look;
 use crate::gpu::{Display, Screen, Surface, event_loop};
-use crate::scene::Lens;
 use crate::{Error, Result};
 
 /// Another thread asks for a frame.
 #[derive(Debug, Clone, Copy)]
 struct Wanted;
 
-/// Opens a window on photos and stays until it is closed.
+/// Opens a window on photos, each with `look` at first, and stays until it is closed.
 ///
 /// # Errors
 /// [`Error::NoDisplay`] and [`Error::NoContext`] before there is any window; [`Error::Gl`] where the driver fails
 /// later. A photo that cannot be read is told of in the window.
-pub fn run(photos: &[PathBuf], lens: Lens) -> Result<()> {
+pub fn run(photos: &[PathBuf], look: Look) -> Result<()> {
     let event_loop = event_loop::<Wanted>()?;
     let display = Display::open(&event_loop)?;
     let mut viewer = Viewer {
-        waiting: Some(Start { display, photos: photos.to_vec(), lens, proxy: event_loop.create_proxy() }),
+        waiting: Some(Start { display, photos: photos.to_vec(), look, proxy: event_loop.create_proxy() }),
         open: None,
         failed: None,
     };
@@ -40,7 +40,7 @@ pub fn run(photos: &[PathBuf], lens: Lens) -> Result<()> {
 struct Start {
     display: Display,
     photos: Vec<PathBuf>,
-    lens: Lens,
+    look: Look,
     proxy: EventLoopProxy<Wanted>,
 }
 
@@ -75,7 +75,7 @@ impl Start {
             // The loop is gone only when the window is.
             let _ = proxy.send_event(Wanted);
         });
-        let mut app = App::new(&device, self.lens, wake)?;
+        let mut app = App::new(&device, self.look, wake)?;
         self.photos.into_iter().for_each(|path| app.open(path));
         let window = surface.window();
         let input = egui_winit::State::new(

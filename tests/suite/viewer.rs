@@ -7,11 +7,14 @@ use std::time::{Duration, Instant};
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, RawInput, Rect, Vec2, pos2, vec2};
 use glam::DVec2;
 use vglare::gpu::{Backend, Device, Screen};
+use vglare::look::Look;
 use vglare::photo::{self, Photo, WriteOptions};
-use vglare::scene::presets;
+use vglare::scene::Goal;
 use vglare::viewer::{App, Document, Shows};
 
 const SIZE: [u32; 2] = [900, 500];
+/// The key, as winit tells of it.
+const CTRL: Modifiers = Modifiers { ctrl: true, command: true, ..Modifiers::NONE };
 
 /// A person at a screen that nobody sees.
 struct Session {
@@ -24,8 +27,7 @@ struct Session {
 impl Session {
     fn new() -> Self {
         let device = Device::open(&Backend::ALL).unwrap();
-        let lens = presets::named(presets::DEFAULT_PRESET).unwrap();
-        let app = App::new(&device, lens, Arc::new(|| {})).unwrap();
+        let app = App::new(&device, Look::default(), Arc::new(|| {})).unwrap();
         let screen = Screen::hidden(&device, SIZE).unwrap();
         Self { app, screen, time: 0.0, due: Duration::ZERO }
     }
@@ -33,8 +35,7 @@ impl Session {
     /// With a synthetic photo open.
     fn with_photo() -> Self {
         let mut session = Self::new();
-        let lens = presets::named(presets::DEFAULT_PRESET).unwrap();
-        session.app.add(Document::new(Path::new("lamp.exr"), lamp(), lens));
+        session.app.add(Document::new(Path::new("lamp.exr"), lamp(), Look::default()));
         session.settle();
         session
     }
@@ -42,8 +43,8 @@ impl Session {
     fn frame(&mut self, events: Vec<Event>) {
         self.time += 0.02;
         let rect = Rect::from_min_size(Pos2::ZERO, vec2(SIZE[0] as f32, SIZE[1] as f32));
-        let input =
-            RawInput { screen_rect: Some(rect), time: Some(self.time), events, focused: true, ..RawInput::default() };
+        let time = Some(self.time);
+        let input = RawInput { screen_rect: Some(rect), time, events, focused: true, ..RawInput::default() };
         self.due = self.app.frame(input, &self.screen).unwrap().repaint_after;
     }
 
@@ -74,8 +75,11 @@ impl Session {
     }
 
     fn press(&mut self, key: Key) {
+        self.shortcut(Modifiers::NONE, key);
+    }
+
+    fn shortcut(&mut self, modifiers: Modifiers, key: Key) {
         for pressed in [true, false] {
-            let modifiers = Modifiers::NONE;
             self.frame(vec![Event::Key { key, physical_key: None, pressed, repeat: false, modifiers }]);
         }
         self.settle();
@@ -109,13 +113,13 @@ fn lamp() -> Photo {
 #[test]
 fn a_light_is_dragged_and_only_the_spectrum_is_computed_anew() {
     let mut session = Session::with_photo();
-    let light = session.document().look.lamps[0].light.position;
+    let light = session.document().lights()[0].position;
     let (before, from) = (session.app.counts(), session.at(light));
     assert_eq!((before.uploads, before.spectra, before.composites), (1, 1, 1));
     let dark = session.at(DVec2::new(0.3, 0.7));
     let was = session.brightness(dark);
     session.drag(from, dark - from);
-    let moved = session.document().look.lamps[0].light.position;
+    let moved = session.document().lights()[0].position;
     assert!((moved - DVec2::new(0.3, 0.7)).length() < 0.02, "{moved}");
     assert!(session.brightness(dark) > was + 30, "{} after {was}", session.brightness(dark));
     let after = session.app.counts();
@@ -127,10 +131,10 @@ fn a_light_is_dragged_and_only_the_spectrum_is_computed_anew() {
 #[test]
 fn a_light_can_be_dragged_off_the_picture() {
     let mut session = Session::with_photo();
-    let from = session.at(session.document().look.lamps[0].light.position);
+    let from = session.at(session.document().lights()[0].position);
     let canvas = session.app.placement().unwrap().rect;
     session.drag(from, vec2(0.0, canvas.top() + 1.0 - from.y));
-    let y = session.document().look.lamps[0].light.position.y;
+    let y = session.document().lights()[0].position.y;
     assert!(y > 1.0, "{y}");
 }
 
@@ -140,7 +144,7 @@ fn the_strength_slider_asks_for_composites_only() {
     let before = session.app.counts();
     let rail = session.app.control("Strength").unwrap();
     session.drag(rail.center(), vec2(rail.width(), 0.0));
-    assert_eq!(session.document().look.settings.strength, 10.0);
+    assert_eq!(session.document().look.strength, 10.0);
     let after = session.app.counts();
     assert_eq!((after.uploads, after.spectra), (before.uploads, before.spectra));
     assert!(after.composites > before.composites);
@@ -149,7 +153,7 @@ fn the_strength_slider_asks_for_composites_only() {
 #[test]
 fn before_and_after_change_places_without_computing() {
     let mut session = Session::with_photo();
-    let beside = session.at(session.document().look.lamps[0].light.position + DVec2::new(0.2, 0.0));
+    let beside = session.at(session.document().lights()[0].position + DVec2::new(0.2, 0.0));
     let (counts, after) = (session.app.counts(), session.screen.read());
     let bright = session.brightness(beside);
     session.press(Key::B);
@@ -200,6 +204,62 @@ fn a_bad_file_is_told_of_and_the_picture_stays() {
     session.settle();
     assert_eq!(session.document().name(), "good.exr");
     assert!(session.app.notices().len() == 1 && session.app.notices()[0].contains("missing.exr"));
-    let lit = session.at(session.document().look.lamps[0].light.position);
+    let lit = session.at(session.document().lights()[0].position);
     assert!(session.brightness(lit) > 600);
+}
+
+#[test]
+fn a_look_that_cannot_be_is_told_of_and_the_picture_stays() {
+    let mut session = Session::with_photo();
+    let before = session.app.counts();
+    let lit = session.at(session.document().lights()[0].position + DVec2::new(0.2, 0.0));
+    let bright = session.brightness(lit);
+    session.app.document_mut().unwrap().look.accuracy.goal = Goal::Tolerance(1e-12);
+    session.settle();
+    assert!(
+        session.app.problem().unwrap().contains("below what 32-bit floats can give"),
+        "{:?}",
+        session.app.problem()
+    );
+    assert_eq!((session.app.counts().spectra, session.brightness(lit)), (before.spectra, bright));
+    session.app.document_mut().unwrap().look.accuracy.allow_floor = true;
+    session.settle();
+    assert_eq!(session.app.problem(), None);
+    assert_eq!(session.app.counts().spectra, before.spectra + 1);
+}
+
+#[test]
+fn a_drag_is_one_step() {
+    let mut session = Session::with_photo();
+    let from = session.at(session.document().lights()[0].position);
+    session.drag(from, vec2(60.0, 30.0));
+    session.press(Key::M);
+    assert!(session.document().lights()[0].muted);
+    session.shortcut(CTRL, Key::Z);
+    assert!(!session.document().lights()[0].muted);
+    let moved = session.document().lights()[0].position;
+    session.shortcut(CTRL, Key::Z);
+    assert_eq!((&session.document().look, session.document().steps()), (&Look::default(), [false, true]));
+    session.shortcut(CTRL, Key::Y);
+    assert_eq!(session.document().lights()[0].position, moved);
+    session.shortcut(CTRL | Modifiers::SHIFT, Key::Z);
+    assert!(session.document().lights()[0].muted);
+}
+
+#[test]
+fn other_rules_search_the_photo_anew() {
+    let mut session = Session::with_photo();
+    assert_eq!(session.document().lights().len(), 1);
+    session.app.document_mut().unwrap().look.find.threshold = Some(1e6);
+    let started = Instant::now();
+    while session.document().wants_search() {
+        assert!(started.elapsed() < Duration::from_secs(20), "it is never searched");
+        std::thread::sleep(Duration::from_millis(5));
+        session.frame(Vec::new());
+    }
+    session.settle();
+    assert!(session.document().lights().is_empty());
+    assert_eq!(session.app.counts().spectra, 2);
+    session.shortcut(CTRL, Key::Z);
+    assert_eq!(session.document().look.find.threshold, None);
 }

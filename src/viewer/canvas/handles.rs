@@ -20,8 +20,8 @@ pub fn show(ui: &mut Ui, document: &mut Document, placement: &Placement) {
     if let Some(selected) = document.selected {
         ghosts(&painter, document, placement, selected);
     }
-    for index in 0..document.look.lamps.len() {
-        lamp(ui, &painter, document, placement, index);
+    for index in 0..document.lights().len() {
+        light(ui, &painter, document, placement, index);
     }
 }
 
@@ -43,35 +43,35 @@ fn axis(ui: &mut Ui, painter: &Painter, document: &mut Document, placement: &Pla
     }
 }
 
-fn lamp(ui: &mut Ui, painter: &Painter, document: &mut Document, placement: &Placement, index: usize) {
-    let at = placement.to_screen(document.place(document.look.lamps[index].light.position));
+fn light(ui: &mut Ui, painter: &Painter, document: &mut Document, placement: &Placement, index: usize) {
+    let at = placement.to_screen(document.place(document.lights()[index].position));
     let response = handle(ui, placement, at, index);
     if response.clicked() || response.drag_started() {
         document.selected = Some(index);
     }
     if let Some(moved) = moved(&response, placement, document.frame.pixel_size()) {
-        document.look.lamps[index].light.position += moved;
+        document.lights_mut()[index].position += moved;
     }
-    let lamp = document.look.lamps[index];
+    let light = document.lights()[index];
     let chosen = document.selected == Some(index);
     let response = response.on_hover_text(format!("Light {}: drag to move it", index + 1));
     let width = if chosen || response.hovered() { 3.0 } else { 1.5 };
     painter.circle_stroke(at, RADIUS, Stroke::new(width + 2.0, shade()));
     painter.circle_stroke(at, RADIUS, Stroke::new(width, if chosen { Color32::YELLOW } else { Color32::WHITE }));
-    if lamp.muted {
+    if light.muted {
         let arm = vec2(RADIUS, RADIUS) * std::f32::consts::FRAC_1_SQRT_2;
         painter.line_segment([at - arm, at + arm], Stroke::new(width, Color32::WHITE));
     } else {
-        painter.circle_filled(at, 2.5, colour(lamp.light.flux));
+        painter.circle_filled(at, 2.5, colour(light.flux));
     }
 }
 
 /// Marks at the ghosts of one light, and the line that they lie on.
 fn ghosts(painter: &Painter, document: &Document, placement: &Placement, selected: usize) {
-    let Some(lamp) = document.look.lamps.get(selected) else { return };
+    let Some(light) = document.lights().get(selected) else { return };
     let axis = document.look.axis;
-    let place = |along: f64| placement.to_screen(document.place(axis + along * (lamp.light.position - axis)));
-    let along = document.look.lens.ghosts.iter().map(|ghost| ghost.along);
+    let place = |along: f64| placement.to_screen(document.place(axis + along * (light.position - axis)));
+    let along = document.look.lens.ghosts().iter().map(|ghost| ghost.along);
     let (low, high) = along.clone().fold((0.0f64, 1.0f64), |(low, high), along| (low.min(along), high.max(along)));
     painter.line_segment([place(low), place(high)], Stroke::new(1.0, Color32::from_white_alpha(90)));
     for along in along.take(MOST_MARKS) {

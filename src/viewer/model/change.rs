@@ -1,7 +1,6 @@
 //! What has to be done again after a change.
 
 use super::{Look, LookLights};
-use crate::choices::Mix;
 
 /// The first of the steps that have to be done again; all that follow it have to be as well.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -20,9 +19,8 @@ pub enum Work {
 
 /// What has to be done again for the picture of `new`, where that of `old` is there.
 pub fn work(old: &Look, new: &Look) -> Work {
-    let searches = |look: &Look| look.lights == LookLights::Found || look.mix == Mix::Energy;
     // A search that found lights for `old` is the same for `new`, unless it goes by other rules.
-    if searches(new) && !(searches(old) && old.find == new.find) {
+    if new.searches() && !(old.searches() && old.find == new.find) {
         return Work::Lights;
     }
     match (&old.lights, &new.lights) {
@@ -47,7 +45,7 @@ mod tests {
 
     use super::super::{Accuracy, LookLens};
     use super::*;
-    use crate::choices::{Evaluator, Normalize};
+    use crate::choices::{Evaluator, Mix, Normalize};
     use crate::scene::{FindOptions, Ghost, Goal, Light};
     use crate::series::Bell;
 

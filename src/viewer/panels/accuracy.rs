@@ -2,9 +2,9 @@
 
 use egui::Ui;
 
+use crate::scene::Goal;
 use crate::viewer::control::Number;
 use crate::viewer::document::Document;
-use crate::viewer::look::TOLERANCE;
 use crate::viewer::stage::Stage;
 
 const TOLERANCES: Number = Number {
@@ -17,9 +17,15 @@ const TOLERANCES: Number = Number {
 
 /// Shows the panel.
 pub fn show(ui: &mut Ui, document: &mut Document, stage: &Stage) {
-    TOLERANCES.show(ui, &mut document.look.tolerance, TOLERANCE);
+    if let Goal::Tolerance(tolerance) = &mut document.look.accuracy.goal {
+        let reset = match document.opened.accuracy.goal {
+            Goal::Tolerance(tolerance) => tolerance,
+            Goal::Budget(_) => 1e-3,
+        };
+        TOLERANCES.show(ui, tolerance, reset);
+    }
     let Some(plan) = stage.plan() else { return };
-    let note = if stage.is_preview(document) { ", a preview" } else { "" };
+    let note = if stage.is_preview() { ", a preview" } else { "" };
     ui.label(format!("{} ghosts by {}{note}", plan.ghosts(), plan.evaluator));
     ui.label(format!("degree {} × {}, {} terms", plan.degree[0], plan.degree[1], plan.terms));
     ui.label(format!("predicted error {:.1e}", plan.predicted.total()));

@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use crate::scene::Light;
 use crate::viewer::document::Document;
-use crate::viewer::look::Lamp;
+use crate::viewer::model::LookLights;
 use crate::viewer::stage::Stage;
 
 /// Shows the panel.
@@ -16,24 +16,25 @@ pub fn show(ui: &mut Ui, document: &mut Document, _: &Stage) {
             .on_hover_text("A white light in the picture's centre, as bright as the faintest here")
             .clicked()
         {
-            document.selected = Some(document.look.lamps.len());
-            let lamp = Lamp { light: another(&document.look.lamps), muted: false };
-            document.look.lamps.push(lamp);
+            let light = another(document.lights());
+            document.selected = Some(document.lights().len());
+            document.lights_mut().push(light);
         }
-        let back = ui.button("As found").on_hover_text("The lights that were found in the photo, where they were");
+        let back = ui.button("As found").on_hover_text("The lights that are found in the photo, where they are");
         if back.clicked() {
-            document.look.lamps.clone_from(&document.opened.lamps);
+            document.look.lights = LookLights::Found;
             document.selected = None;
         }
     });
     let mut gone = None;
-    for (index, lamp) in document.look.lamps.iter_mut().enumerate() {
+    for index in 0..document.lights().len() {
+        let light = document.lights()[index];
         ui.horizontal(|ui| {
-            let mut on = !lamp.muted;
+            let mut on = !light.muted;
             if ui.checkbox(&mut on, "").on_hover_text("Whether it glares (M)").clicked() {
-                lamp.muted = !on;
+                document.lights_mut()[index].muted = !on;
             }
-            let text = format!("{}  {:.2e}", index + 1, flux(&lamp.light));
+            let text = format!("{}  {:.2e}", index + 1, flux(&light));
             let row = ui.selectable_label(document.selected == Some(index), text);
             if row.on_hover_text("Its flux: radiance times area, in half picture heights squared").clicked() {
                 document.selected = Some(index);
@@ -44,8 +45,7 @@ pub fn show(ui: &mut Ui, document: &mut Document, _: &Stage) {
         });
     }
     if let Some(index) = gone {
-        document.look.lamps.remove(index);
-        document.selected = None;
+        document.delete_light(index);
     }
 }
 
@@ -55,8 +55,8 @@ fn flux(light: &Light) -> f64 {
 }
 
 /// A point in the centre, as bright as the faintest light that there is.
-fn another(lamps: &[Lamp]) -> Light {
-    let faintest = lamps.iter().map(|lamp| flux(&lamp.light)).fold(f64::INFINITY, f64::min);
+fn another(lights: &[Light]) -> Light {
+    let faintest = lights.iter().map(flux).fold(f64::INFINITY, f64::min);
     let flux = if faintest.is_finite() { faintest } else { 1.0 };
     Light { position: DVec2::ZERO, flux: [flux; 3], size: 0.0, muted: false }
 }

@@ -5,6 +5,7 @@ use egui::{ComboBox, Ui};
 use crate::scene::presets;
 use crate::viewer::control::Number;
 use crate::viewer::document::Document;
+use crate::viewer::model::LookLens;
 use crate::viewer::stage::Stage;
 
 const STRENGTH: Number = Number {
@@ -17,19 +18,19 @@ const STRENGTH: Number = Number {
 
 /// Shows the panel.
 pub fn show(ui: &mut Ui, document: &mut Document, _: &Stage) {
-    let reset = document.opened.settings.strength;
-    STRENGTH.show(ui, &mut document.look.settings.strength, reset);
+    let reset = document.opened.strength;
+    STRENGTH.show(ui, &mut document.look.strength, reset);
     ui.horizontal(|ui| {
         ui.add_sized([74.0, 18.0], egui::Label::new("Lens"));
-        let combo = ComboBox::from_id_salt("preset").selected_text(&document.look.lens.name);
+        let combo = ComboBox::from_id_salt("preset").selected_text(document.look.lens().name);
         combo.show_ui(ui, |ui| {
             for preset in presets::all() {
                 // A preset that is compiled in can be read; a test reads them all.
                 let Ok(lens) = preset.lens() else { continue };
-                let chosen = document.look.lens.name == lens.name;
+                let chosen = matches!(&document.look.lens, LookLens::Preset(now) if now.name == lens.name);
                 let tip = lens.description.clone();
                 if ui.selectable_label(chosen, &lens.name).on_hover_text(tip).clicked() {
-                    document.look.lens = lens;
+                    document.look.lens = LookLens::Preset(lens);
                 }
             }
         });

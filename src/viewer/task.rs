@@ -1,0 +1,67 @@
+//! Work on a thread of its own, so that the window never waits.
+
+use std::io;
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::thread;
+
+use super::loader::Wake;
+
+/// Work under way.
+pub struct Task<T> {
+    receiver: Receiver<T>,
+}
+
+/// What has become of a task.
+#[derive(Debug, PartialEq)]
+pub enum State<T> {
+    /// It goes on.
+    Running,
+    /// It came to an end, with this.
+    Done(T),
+    /// It came to an end without a result.
+    Failed,
+}
+
+impl<T: Send + 'static> Task<T> {
+    /// Begins a task, after which `wake` is called.
+    ///
+    /// # Errors
+    /// Where the system gives no thread.
+    pub fn start(name: &str, wake: &Wake, work: impl FnOnce() -> T + Send + 'static) -> io::Result<Self> {
+        let (sender, receiver) = channel();
+        let wake = wake.clone();
+        thread::Builder::new().name(name.to_owned()).spawn(move || {
+            // The other end is gone where nobody wants the result any more.
+            let _ = sender.send(work());
+            wake();
+        })?;
+        Ok(Self { receiver })
+    }
+
+    /// Looks after it; its result is there once.
+    pub fn poll(&self) -> State<T> {
+        match self.receiver.try_recv() {
+            Ok(result) => State::Done(result),
+            Err(TryRecvError::Empty) => State::Running,
+            Err(TryRecvError::Disconnected) => State::Failed,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+    use std::sync::mpsc::channel;
+
+    use super::*;
+
+    #[test]
+    fn a_task_wakes_the_window_and_is_done_once() {
+        let (sender, receiver) = channel();
+        let wake: Wake = Arc::new(move || sender.send(()).unwrap());
+        let task = Task::start("test", &wake, || 7).unwrap();
+        receiver.recv().unwrap();
+        assert_eq!(task.poll(), State::Done(7));
+        assert_eq!(task.poll(), State::Failed);
+    }
+}
