@@ -186,7 +186,10 @@ impl App {
         let shapes = context.tessellate(output.shapes, output.pixels_per_point);
         self.painter.paint(screen, output.pixels_per_point, &shapes, &mut output.textures_delta);
         let by_egui = output.viewport_output.values().map(|viewport| viewport.repaint_delay).min();
-        Ok(Shown { repaint_after: by_egui.unwrap_or(Duration::MAX).min(again), platform: output.platform_output })
+        Ok(Shown {
+            repaint_after: by_egui.unwrap_or(Duration::MAX).min(again).min(self.next_look()),
+            platform: output.platform_output,
+        })
     }
 
     /// Takes what was read in the background.
@@ -286,12 +289,14 @@ impl App {
         self.tabs(ui);
         self.strips(ui);
         self.exports(ui);
+        let asks = self.asks();
         let Some((_, document)) = self.documents.get_mut(self.current) else {
             self.canvas = Canvas::default();
             self.start(ui);
             return;
         };
-        let command = shortcuts::apply(ui.ctx(), document, self.canvas.placement.as_ref());
+        let placement = self.canvas.placement.as_ref();
+        let command = if asks { None } else { shortcuts::apply(ui.ctx(), document, placement) };
         Panel::right("panels").default_size(300.0).show(ui, |ui| panels::show(ui, document, &self.stage));
         let canvas =
             CentralPanel::no_frame().show(ui, |ui| canvas::show(ui, document, screen.size(), self.probe.as_ref()));

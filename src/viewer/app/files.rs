@@ -1,7 +1,7 @@
 //! What the window does with files: looks and pictures in and out, and what it remembers.
 
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use std::time::{Duration, SystemTime};
 
 use egui::{CentralPanel, Key, Modifiers, Panel, Ui};
 
@@ -12,6 +12,9 @@ use crate::viewer::ask::{Answer, Ask, Purpose};
 use crate::viewer::document::Document;
 use crate::viewer::export::{Export, Subject};
 use crate::viewer::model::{Look, State, command_line};
+
+/// How often the file of a look is looked at while nothing else happens.
+const LOOK_AGAIN: Duration = Duration::from_secs(2);
 
 /// What the window knows of files besides the photos.
 #[derive(Default)]
@@ -149,6 +152,17 @@ impl App {
             let path = file.path.clone();
             self.open_look(&path);
         }
+    }
+
+    /// When the look's file is to be looked at again, where there is one.
+    pub(super) fn next_look(&self) -> Duration {
+        let watched = self.document().is_some_and(|document| document.file.is_some());
+        if watched { LOOK_AGAIN } else { Duration::MAX }
+    }
+
+    /// Whether a question stands over everything else.
+    pub(super) fn asks(&self) -> bool {
+        self.files.ask.is_some()
     }
 
     /// The bar at the top.

@@ -48,17 +48,17 @@ fn the_window_writes_what_apply_writes_of_the_saved_look() {
 #[test]
 fn the_picture_is_saved_under_the_name_that_is_typed() {
     let (folder, mut session) = in_a_folder();
-    session.shortcut(CTRL, Key::S);
-    session.press(Key::Enter);
+    session.key(CTRL, Key::S);
+    session.key(Modifiers::NONE, Key::Enter);
     session.wait(|app| !app.is_writing());
     assert_eq!(session.app.notices(), [] as [String; 0]);
     let written = folder.path().join("lamp-glare.exr");
     assert_eq!(photo::read(&written).unwrap().pixels.len(), lamp().pixels.len());
     // Now that it is there, Enter alone does not replace it.
     std::fs::write(&written, "precious").unwrap();
-    session.shortcut(CTRL, Key::S);
-    session.press(Key::Enter);
-    session.wait(|app| !app.is_writing());
+    session.key(CTRL, Key::S);
+    session.key(Modifiers::NONE, Key::Enter);
+    assert!(!session.app.is_writing());
     assert_eq!(std::fs::read(&written).unwrap(), b"precious");
 }
 
