@@ -26,12 +26,13 @@ layout(std140, binding = BINDING_DIRECT) uniform Direct {
     ivec2 corner;   // of the tile, in pixels of the picture
     ivec2 size;     // of the picture, in pixels
     uint ghost_count; // a multiple of STEP; the last ones may have no weight
+    float unit;     // one over the picture's height
 };
 
 vec3 glare(ivec2 pixel) {
     ivec2 p = corner + pixel;
-    // Integers up to the division, so that no pixel's centre is off by more than one rounding.
-    vec2 position = vec2(ivec2(2 * p.x + 1 - size.x, size.y - 2 * p.y - 1)) / float(size.y);
+    // Integers up to the product, which GLSL rounds correctly as it need not a quotient: two roundings in all.
+    vec2 position = vec2(ivec2(2 * p.x + 1 - size.x, size.y - 2 * p.y - 1)) * unit;
     // Batches are summed with what each addition lost (Kahan), so that rounding does not grow with K.
     precise vec3 sum = vec3(0.0), lost = vec3(0.0);
     for (uint base = 0u; base < ghost_count; base += 64u) {

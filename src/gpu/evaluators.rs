@@ -86,7 +86,9 @@ impl Evaluators {
 
     /// Readies `direct` for a tile whose first pixel is `corner` in a picture of `size` pixels.
     pub fn direct(&mut self, corner: [i32; 2], size: [i32; 2]) -> Result<()> {
-        self.direct.store(&[[corner[0], corner[1], size[0], size[1], self.ghost_count as i32, 0, 0, 0]])?;
+        let unit = (1.0 / f64::from(size[1])) as f32;
+        let count = self.ghost_count as i32;
+        self.direct.store(&[[corner[0], corner[1], size[0], size[1], count, unit.to_bits() as i32, 0, 0]])?;
         self.direct.bind_uniform(DIRECT);
         if self.many {
             self.ghosts.bind_storage(GHOSTS);

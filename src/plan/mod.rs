@@ -353,8 +353,10 @@ fn with_rounding(
     let between = evaluator != Evaluator::Grid || request.oversampling.is_some();
     let given = request.period.is_some() && request.degree.is_some() && between;
     let usable = request.tolerance - rounding;
-    if usable < 0.25 * request.tolerance && !given {
-        return Err(Error::ToleranceBelowFloor { asked: request.tolerance, floor: rounding / 0.75 });
+    // A direct sum leaves out nothing but ghosts; a series needs room for its own bounds.
+    let needed = if evaluator == Evaluator::Direct { share::DROPPED } else { 0.25 };
+    if usable < needed * request.tolerance && !given {
+        return Err(Error::ToleranceBelowFloor { asked: request.tolerance, floor: rounding / (1.0 - needed) });
     }
     let storage = rounding::stored(weighed, evaluator).min(rounding);
     let mut plan = Plan {

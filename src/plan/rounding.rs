@@ -36,9 +36,10 @@ pub(super) fn stored(weighed: &Weighed, evaluator: Evaluator) -> f64 {
     HALF_A_UNIT * results * weight
 }
 
-/// `direct` has positions in f32, so a bell far from the origin shifts: by half a rounding of its centre, and two and a
-/// half of the pixel's, which is what a division in GLSL may be off by.
-const PER_CENTER: f64 = 3.0 * f32::EPSILON as f64;
+/// `direct` has positions in f32, so a bell far from the origin shifts: by the rounding of its centre, which is known, and
+/// by those of the pixel's position, a product with one over the picture's height: half a unit for each of the two, and a
+/// little for the pixel being somewhere else than the centre.
+const PER_POSITION: f64 = 1.1 * f32::EPSILON as f64;
 
 /// Harmonics that [`per_weight`] was seen with. Beyond them it grows, by itself for each `PER_DEGREE`: a phase's rounding
 /// is multiplied by the harmonic, and there are more terms to add up.
@@ -116,7 +117,8 @@ impl Place {
 
 /// How far f32 may shift a bell, in sizes.
 fn shift(ghost: &Ghost) -> DVec2 {
-    PER_CENTER * (ghost.center / ghost.size).abs()
+    let rounded = |center: f64| (center - f64::from(center as f32)).abs() + PER_POSITION * center.abs();
+    DVec2::new(rounded(ghost.center.x), rounded(ghost.center.y)) / ghost.size
 }
 
 /// What one bell of peak 1 is off by in the direct sum, at most: unlike a series, it is as small as the bell itself at
