@@ -57,6 +57,8 @@ pub struct Shown {
     pub repaint_after: Duration,
     /// What egui asks of the window: cursor, clipboard, …
     pub platform: egui::PlatformOutput,
+    /// Whether frames are to wait for the display.
+    pub vsync: bool,
 }
 
 impl App {
@@ -77,7 +79,7 @@ impl App {
         Ok(Self {
             context,
             painter: Painter::new(device)?,
-            stage: Stage::new(device)?,
+            stage: Stage::new(device, wake.clone())?,
             loader: Loader::new(wake.clone()),
             wake,
             look,
@@ -167,6 +169,7 @@ impl App {
     pub fn frame(&mut self, input: RawInput, screen: &Screen) -> Result<Shown> {
         self.take_in();
         let context = self.context.clone();
+        self.stage.tick(input.time.unwrap_or_else(|| context.time()));
         let before = self.document().map(Document::known_look);
         let mut output = context.run_ui(input, |ui| self.ui(ui, screen));
         self.settle(before);
@@ -179,7 +182,11 @@ impl App {
         let shapes = context.tessellate(output.shapes, output.pixels_per_point);
         self.painter.paint(screen, output.pixels_per_point, &shapes, &mut output.textures_delta);
         let by_egui = output.viewport_output.values().map(|viewport| viewport.repaint_delay).min();
-        Ok(Shown { repaint_after: by_egui.unwrap_or(Duration::MAX).min(again), platform: output.platform_output })
+        Ok(Shown {
+            repaint_after: by_egui.unwrap_or(Duration::MAX).min(again),
+            platform: output.platform_output,
+            vsync: panels::vsync(&context),
+        })
     }
 
     /// Takes what was read in the background.
@@ -251,6 +258,13 @@ impl App {
         if problem != self.stage.problem().is_some() {
             again = Duration::ZERO;
         }
+        let moving = still < SETTLED || self.context.egui_is_using_pointer();
+        let (news, later) = self.stage.study(document, moving, &self.context)?;
+        if news {
+            again = Duration::ZERO;
+        } else if later && still < SETTLED {
+            again = again.min(Duration::from_secs_f64(SETTLED - still));
+        }
         if let Some(loupe) = self.canvas.loupe {
             self.stage.magnify(document, loupe.center, loupe.side, loupe.before, screen, loupe.region)?;
             let [column, row] = loupe.pixel;
@@ -281,8 +295,8 @@ impl App {
         };
         let command = shortcuts::apply(ui.ctx(), document, self.canvas.placement.as_ref());
         Panel::right("panels").default_size(300.0).show(ui, |ui| panels::show(ui, document, &self.stage));
-        let canvas =
-            CentralPanel::no_frame().show(ui, |ui| canvas::show(ui, document, screen.size(), self.probe.as_ref()));
+        let canvas = CentralPanel::no_frame()
+            .show(ui, |ui| canvas::show(ui, document, &self.stage, screen.size(), self.probe.as_ref()));
         self.canvas = canvas.inner;
         match command {
             Some(Command::Next) => self.current = (self.current + 1) % self.documents.len(),

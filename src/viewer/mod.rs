@@ -9,6 +9,8 @@
 //! | `viewing` | what a person sets of the view, and where pixels lie on the screen for it |
 //! | `stage` | the picture on the device; computes what has changed, and nothing else |
 //! | `loader` | files, read in the background |
+//! | `timings` | how long the last frames took |
+//! | `study` | what is found out about a picture at rest, in the background |
 //! | `task` | other work in the background |
 //! | `canvas` | the picture under the pointer: moving, magnifying, the lights' handles, the loupe |
 //! | `panels` | the controls, one file a panel |
@@ -27,7 +29,9 @@ pub mod model;
 mod panels;
 mod shortcuts;
 mod stage;
+mod study;
 mod task;
+mod timings;
 mod viewing;
 mod window;
 
@@ -35,5 +39,6 @@ pub use app::{App, Shown};
 pub use document::{Document, LIVE_PIXELS};
 pub use loader::Wake;
 pub use stage::{Counts, Times};
+pub use study::{Cut, CutPoint, Degree, Plot, Wanted};
 pub use viewing::{Placement, Shows, Viewing, Zoom};
 pub use window::run;

@@ -57,6 +57,7 @@ struct Open {
     screen: Screen,
     input: egui_winit::State,
     hidden: bool,
+    vsync: bool,
     title: String,
     surface: Surface,
 }
@@ -87,7 +88,7 @@ impl Start {
             Some(app.max_texture_side()),
         );
         let screen = Screen::of_window(&device, window.inner_size().into());
-        Ok(Open { app, screen, input, hidden: true, title: String::new(), surface })
+        Ok(Open { app, screen, input, hidden: true, vsync: true, title: String::new(), surface })
     }
 }
 
@@ -106,6 +107,11 @@ impl Open {
         }
         let input = self.input.take_egui_input(window);
         let shown = self.app.frame(input, &self.screen)?;
+        if shown.vsync != self.vsync {
+            // A driver may not obey; then it stays as it was.
+            self.surface.set_vsync(shown.vsync);
+            self.vsync = shown.vsync;
+        }
         self.surface.swap()?;
         self.input.handle_platform_output(window, shown.platform);
         let title = self.app.title();

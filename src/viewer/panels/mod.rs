@@ -1,13 +1,17 @@
 //! The controls, one file a panel: a function that shows it, and its line in [`PANELS`].
 
 mod accuracy;
+mod by_hand;
 mod keys;
 mod lights;
 mod look;
 mod performance;
+mod plots;
 mod view;
 
 use egui::{CollapsingHeader, ScrollArea, Ui};
+
+pub use performance::vsync;
 
 use super::document::Document;
 use super::stage::Stage;
@@ -22,11 +26,12 @@ struct Panel {
 }
 
 /// Every panel, from the top.
-const PANELS: [Panel; 6] = [
+const PANELS: [Panel; 7] = [
     Panel { title: "Look", open: true, show: look::show },
     Panel { title: "View", open: true, show: view::show },
     Panel { title: "Lights", open: true, show: lights::show },
     Panel { title: "Accuracy", open: true, show: accuracy::show },
+    Panel { title: "Plots", open: false, show: plots::show },
     Panel { title: "Performance", open: false, show: performance::show },
     Panel { title: "Keys", open: false, show: keys::show },
 ];
