@@ -12,11 +12,13 @@ use super::loader::{Loader, Wake};
 use super::model::{Look, Work, work};
 use super::shortcuts::{self, Command};
 use super::stage::{Counts, Stage};
+use super::study::Study;
 use super::task::{State, Task};
 use super::{control, panels, viewing};
 use crate::Result;
 use crate::gpu::paint::Painter;
 use crate::gpu::{Device, Screen};
+use crate::plan::Plan;
 use crate::scene::{FindOptions, Found};
 
 /// Milliseconds of plan, spectrum and composite from which on a drag is shown by previews.
@@ -142,7 +144,18 @@ impl App {
         self.stage.counts()
     }
 
-    /// Where the slider of the control called `name` was drawn last, in points, for scripts to drag.
+    /// The plan of the picture.
+    pub fn plan(&self) -> Option<&Plan> {
+        self.stage.plan()
+    }
+
+    /// What is known of the picture.
+    pub fn study(&self) -> &Study {
+        self.stage.known()
+    }
+
+    /// Where the slider of the control called `name`, or the header of the panel called so, was drawn last, in points,
+    /// for scripts to drag and click.
     pub fn control(&self, name: &str) -> Option<egui::Rect> {
         self.context.data(|data| data.get_temp(control::place(name)))
     }

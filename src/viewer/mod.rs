@@ -39,6 +39,6 @@ pub use app::{App, Shown};
 pub use document::{Document, LIVE_PIXELS};
 pub use loader::Wake;
 pub use stage::{Counts, Times};
-pub use study::{Cut, CutPoint, Degree, Plot, Wanted};
+pub use study::{Cut, CutPoint, Degree, Plot, Study, Wanted};
 pub use viewing::{Placement, Shows, Viewing, Zoom};
 pub use window::run;

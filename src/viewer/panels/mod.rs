@@ -13,6 +13,7 @@ use egui::{CollapsingHeader, ScrollArea, Ui};
 
 pub use performance::vsync;
 
+use super::control::place;
 use super::document::Document;
 use super::stage::Stage;
 
@@ -41,7 +42,8 @@ pub fn show(ui: &mut Ui, document: &mut Document, stage: &Stage) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         for panel in &PANELS {
             let header = CollapsingHeader::new(panel.title).default_open(panel.open);
-            header.show(ui, |ui| (panel.show)(ui, document, stage));
+            let shown = header.show(ui, |ui| (panel.show)(ui, document, stage));
+            ui.data_mut(|data| data.insert_temp(place(panel.title), shown.header_response.rect));
         }
     });
 }
