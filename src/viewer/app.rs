@@ -271,12 +271,14 @@ impl App {
         if problem != self.stage.problem().is_some() {
             again = Duration::ZERO;
         }
-        let moving = still < SETTLED || self.context.egui_is_using_pointer();
+        let held = self.context.egui_is_using_pointer();
+        let moving = still < SETTLED || held || self.stage.counts().spectra > done.spectra;
         let (news, later) = self.stage.study(document, moving, &self.context)?;
         if news {
             again = Duration::ZERO;
-        } else if later && still < SETTLED {
-            again = again.min(Duration::from_secs_f64(SETTLED - still));
+        } else if later && !held {
+            // A frame of its own, where a script and no person changed the look.
+            again = again.min(Duration::from_secs_f64((SETTLED - still).max(0.02)));
         }
         if let Some(loupe) = self.canvas.loupe {
             self.stage.magnify(document, loupe.center, loupe.side, loupe.before, screen, loupe.region)?;
