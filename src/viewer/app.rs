@@ -1,5 +1,7 @@
 //! The whole window but the window: what is open, and one frame of it on a screen.
 
+mod files;
+
 use std::path::PathBuf;
 use std::rc::Rc;
 use std::time::Duration;
@@ -21,6 +23,9 @@ use crate::gpu::{Device, Screen};
 use crate::plan::Plan;
 use crate::scene::{FindOptions, Found};
 
+use files::Files;
+pub(super) use files::LookFile;
+
 /// Milliseconds of plan, spectrum and composite from which on a drag is shown by previews.
 const SLOW: f64 = 33.0;
 /// For how long nothing must change before a preview is replaced while the pointer still holds on, in seconds.
@@ -35,6 +40,7 @@ pub struct App {
     wake: Wake,
     look: Look,
     search: Option<Search>,
+    files: Files,
     documents: Vec<(u64, Document)>,
     current: usize,
     next: u64,
@@ -86,6 +92,7 @@ impl App {
             wake,
             look,
             search: None,
+            files: Files::default(),
             documents: Vec::new(),
             current: 0,
             next: 0,
@@ -196,7 +203,7 @@ impl App {
         self.painter.paint(screen, output.pixels_per_point, &shapes, &mut output.textures_delta);
         let by_egui = output.viewport_output.values().map(|viewport| viewport.repaint_delay).min();
         Ok(Shown {
-            repaint_after: by_egui.unwrap_or(Duration::MAX).min(again),
+            repaint_after: by_egui.unwrap_or(Duration::MAX).min(again).min(self.next_look()),
             platform: output.platform_output,
             vsync: panels::vsync(&context),
         })
@@ -206,10 +213,14 @@ impl App {
     fn take_in(&mut self) {
         for result in self.loader.take() {
             match result {
-                Ok(document) => self.add(document),
+                Ok(document) => {
+                    self.remember_photo(&document.path);
+                    self.add(document);
+                }
                 Err(error) => self.notice(error.to_string()),
             }
         }
+        self.take_in_files();
         if let Some(Search { document, options, task }) = self.search.take() {
             match task.poll() {
                 State::Running => self.search = Some(Search { document, options, task }),
@@ -243,6 +254,9 @@ impl App {
                 }
                 Err(error) => self.notice(format!("the photo cannot be searched: {error}")),
             }
+        }
+        if !gesture {
+            self.remember_look();
         }
     }
 
@@ -297,18 +311,18 @@ impl App {
     fn ui(&mut self, ui: &mut Ui, screen: &Screen) {
         let dropped = ui.input(|input| input.raw.dropped_files.clone());
         dropped.iter().for_each(|file| self.open(file.path().to_owned()));
+        self.bar(ui);
         self.tabs(ui);
         self.strips(ui);
+        self.exports(ui);
+        let asks = self.asks();
         let Some((_, document)) = self.documents.get_mut(self.current) else {
             self.canvas = Canvas::default();
-            CentralPanel::default().show(ui, |ui| {
-                ui.with_layout(Layout::centered_and_justified(egui::Direction::TopDown), |ui| {
-                    ui.label("Drop photos here");
-                });
-            });
+            self.start(ui);
             return;
         };
-        let command = shortcuts::apply(ui.ctx(), document, self.canvas.placement.as_ref());
+        let placement = self.canvas.placement.as_ref();
+        let command = if asks { None } else { shortcuts::apply(ui.ctx(), document, placement) };
         Panel::right("panels").default_size(300.0).show(ui, |ui| panels::show(ui, document, &self.stage));
         let canvas = CentralPanel::no_frame()
             .show(ui, |ui| canvas::show(ui, document, &self.stage, screen.size(), self.probe.as_ref()));

@@ -11,7 +11,7 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy};
 use winit::window::{Window, WindowId};
 
 use super::app::App;
-use super::model::Look;
+use super::model::{Look, State};
 use crate::gpu::{Display, Screen, Surface, event_loop};
 use crate::{Error, Result};
 
@@ -56,6 +56,7 @@ struct Open {
     app: App,
     screen: Screen,
     input: egui_winit::State,
+    state: Option<State>,
     hidden: bool,
     vsync: bool,
     title: String,
@@ -64,10 +65,13 @@ struct Open {
 
 impl Start {
     fn open(self, event_loop: &ActiveEventLoop) -> Result<Open> {
+        // Without a home nothing is remembered.
+        let state = State::of_user().ok();
+        let [width, height] = state.as_ref().and_then(State::size).unwrap_or([1280, 800]);
         // Shown with its first frame, so that nothing flashes.
         let attributes = Window::default_attributes()
             .with_title("vglare")
-            .with_inner_size(LogicalSize::new(1280.0, 800.0))
+            .with_inner_size(LogicalSize::new(width, height))
             .with_visible(false);
         let (device, surface) = self.display.window(event_loop, attributes)?;
         surface.set_vsync(true);
@@ -77,6 +81,7 @@ impl Start {
             let _ = proxy.send_event(Wanted);
         });
         let mut app = App::new(&device, self.look, wake)?;
+        state.clone().into_iter().for_each(|state| app.remember(state));
         self.photos.into_iter().for_each(|path| app.open(path));
         let window = surface.window();
         let input = egui_winit::State::new(
@@ -88,11 +93,18 @@ impl Start {
             Some(app.max_texture_side()),
         );
         let screen = Screen::of_window(&device, window.inner_size().into());
-        Ok(Open { app, screen, input, hidden: true, vsync: true, title: String::new(), surface })
+        Ok(Open { app, screen, input, state, hidden: true, vsync: true, title: String::new(), surface })
     }
 }
 
 impl Open {
+    /// Remembers the window's size; at the end there is nobody to be told that it cannot be.
+    fn keep_size(&self) {
+        let window = self.surface.window();
+        let size: LogicalSize<u32> = window.inner_size().to_logical(window.scale_factor());
+        let _ = self.state.as_ref().map(|state| state.keep_size([size.width, size.height]));
+    }
+
     /// Draws a frame; says when the next one is due.
     fn frame(&mut self) -> Result<Option<Instant>> {
         let window = self.surface.window();
@@ -175,7 +187,10 @@ impl ApplicationHandler<Wanted> for Viewer {
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         let Some(open) = &mut self.open else { return };
         match event {
-            WindowEvent::CloseRequested => event_loop.exit(),
+            WindowEvent::CloseRequested => {
+                open.keep_size();
+                event_loop.exit();
+            }
             WindowEvent::RedrawRequested => self.redraw(event_loop),
             event => {
                 if open.input.on_window_event(open.surface.window(), &event).repaint {

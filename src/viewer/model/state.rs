@@ -1,5 +1,5 @@
-//! What the window remembers from one time to the next, in the user's state folder: the last look, and the photos that
-//! were opened last.
+//! What the window remembers from one time to the next, in the user's state folder: the last look, the photos that were
+//! opened last, and the window's size.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -18,6 +18,7 @@ pub const MOST_RECENT: usize = 12;
 
 const LOOK: &str = "look.toml";
 const RECENT: &str = "recent.json";
+const WINDOW: &str = "window.json";
 
 /// The folder.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,6 +93,21 @@ impl State {
             .map_err(|error| Error::scene_file(&path, format_args!("it is no list of photos ({error})")))
     }
 
+    /// Keeps the window's columns and rows, in points.
+    ///
+    /// # Errors
+    /// [`Error::Write`] where the folder cannot be made or the file cannot be written.
+    pub fn keep_size(&self, size: [u32; 2]) -> Result<()> {
+        target::write_json(&self.place(WINDOW)?, &size, true)
+    }
+
+    /// The window's size, if one was kept that is of use.
+    pub fn size(&self) -> Option<[u32; 2]> {
+        let text = std::fs::read_to_string(self.folder.join(WINDOW)).ok()?;
+        let size: [u32; 2] = serde_json::from_str(&text).ok()?;
+        size.iter().all(|side| (100..=16384).contains(side)).then_some(size)
+    }
+
     /// A file in the folder, which is made if need be.
     fn place(&self, name: &str) -> Result<PathBuf> {
         let path = self.folder.join(name);
@@ -141,6 +157,16 @@ mod tests {
         assert!(matches!(state.recent(), Err(Error::SceneFile { .. })));
         state.opened(&photo(3)).unwrap();
         assert_eq!(state.recent().unwrap(), [photo(3)]);
+    }
+
+    #[test]
+    fn the_windows_size_is_kept_where_it_is_of_use() {
+        let (_folder, state) = state();
+        assert_eq!(state.size(), None);
+        state.keep_size([1000, 700]).unwrap();
+        assert_eq!(state.size(), Some([1000, 700]));
+        state.keep_size([1000, 0]).unwrap();
+        assert_eq!(state.size(), None);
     }
 
     #[test]

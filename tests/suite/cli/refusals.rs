@@ -21,6 +21,15 @@ fn an_existing_file_is_only_replaced_by_force() {
 }
 
 #[test]
+fn a_window_is_not_opened_for_a_look_that_cannot_be_read() {
+    let place = Workplace::new();
+    place.text("look.toml", "[look]\nstrength = -1\n");
+    place.vglare(&["view", "--scene", "look.toml"]).failed(1, &["look.toml: line 2", "strength"]);
+    place.vglare(&["view", "--scene", "look.toml", "--preset", "zoom"]).failed(2, &["--preset"]);
+    place.vglare(&["view", "--preset", "no-such-lens"]).failed(2, &["no-such-lens", "classic-prime"]);
+}
+
+#[test]
 fn usage_errors_exit_with_2() {
     let place = Workplace::new();
     place.photo("in.exr");
