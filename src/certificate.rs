@@ -53,20 +53,7 @@ impl Certificate {
     /// # Errors
     /// [`Error::Gl`] where the driver refuses.
     pub fn measure(renderer: &mut Renderer, ghosts: &[Ghost], plan: &Plan, frame: Frame, asked: f64) -> Result<Self> {
-        let pixels = sample_pixels(ghosts, plan, frame);
-        let points: Vec<_> = pixels.iter().map(|&[i, j]| frame.position(f64::from(i), f64::from(j))).collect();
-        let rendered = renderer.probe(frame, &pixels)?;
-        // In the plan's own unit where that is larger: light that cancels, or that does not reach the picture, is nothing.
-        let difference = compare_in(&reference::direct_at(ghosts, &points), &rendered, plan.scale);
-        Ok(Self {
-            asked,
-            predicted: plan.predicted.total(),
-            measured: difference.relative,
-            verify: Verify::Sample,
-            pixels: pixels.len(),
-            worst_pixel: pixels.get(difference.worst.0).copied().unwrap_or_default(),
-            not_finite: difference.not_finite,
-        })
+        Ok(Samples::take(renderer, ghosts, plan, frame, asked)?.certify(ghosts))
     }
 
     /// Measures the renderer's field, which must be that of `ghosts` and `plan`, at every pixel of the frame's window;
@@ -120,6 +107,45 @@ impl Certificate {
             return Ok(());
         }
         Err(Error::ToleranceMissed { asked: self.asked, measured: self.measured })
+    }
+}
+
+/// A renderer's field at sample pixels, not yet held against the truth: that needs no device, and may be done elsewhere.
+pub(crate) struct Samples {
+    pixels: Vec<[i32; 2]>,
+    rendered: Vec<[f64; 3]>,
+    frame: Frame,
+    unit: [f64; 3],
+    asked: f64,
+    predicted: f64,
+}
+
+impl Samples {
+    /// Looks the field up, which must be that of `ghosts` and `plan`.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the driver refuses.
+    pub fn take(renderer: &mut Renderer, ghosts: &[Ghost], plan: &Plan, frame: Frame, asked: f64) -> Result<Self> {
+        let pixels = sample_pixels(ghosts, plan, frame);
+        let rendered = renderer.probe(frame, &pixels)?;
+        Ok(Self { pixels, rendered, frame, unit: plan.scale, asked, predicted: plan.predicted.total() })
+    }
+
+    /// Holds them against the direct sum of the same ghosts.
+    pub fn certify(&self, ghosts: &[Ghost]) -> Certificate {
+        let points: Vec<_> =
+            self.pixels.iter().map(|&[i, j]| self.frame.position(f64::from(i), f64::from(j))).collect();
+        // In the plan's own unit where that is larger: light that cancels, or that does not reach the picture, is nothing.
+        let difference = compare_in(&reference::direct_at(ghosts, &points), &self.rendered, self.unit);
+        Certificate {
+            asked: self.asked,
+            predicted: self.predicted,
+            measured: difference.relative,
+            verify: Verify::Sample,
+            pixels: self.pixels.len(),
+            worst_pixel: self.pixels.get(difference.worst.0).copied().unwrap_or_default(),
+            not_finite: difference.not_finite,
+        }
     }
 }
 

@@ -162,13 +162,18 @@ impl Spectrum {
 
     /// Rounds every term as 16-bit floats would hold it, were the largest 1.
     pub fn round_to_half(&mut self) -> Result<()> {
-        let mut terms = self.terms.read(3 * self.term_count);
+        let mut terms = self.read();
         let values = terms.as_flattened_mut();
         let largest = values.iter().fold(0.0f32, |largest, value| largest.max(value.abs()));
         if largest > 0.0 {
             values.iter_mut().for_each(|value| *value = half::f16::from_f32(*value / largest).to_f32() * largest);
         }
         self.terms.store(&terms)
+    }
+
+    /// The terms, three a mode: A, B, C, D of red, green and blue.
+    pub fn read(&self) -> Vec<[f32; 4]> {
+        self.terms.read(3 * self.term_count)
     }
 
     /// Makes the tables visible to the passes.

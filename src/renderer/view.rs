@@ -127,6 +127,12 @@ impl Renderer {
         both.then(|| [photo, picture].map(|texture| texture.read_texel([column, row])))
     }
 
+    /// The spectrum: for each mode that the plan keeps, harmonic by harmonic of x, A, B, C and D of red, green and blue.
+    /// Of a plan without a series it means nothing.
+    pub(crate) fn spectrum_terms(&self) -> Vec<[f32; 4]> {
+        self.spectrum.read()
+    }
+
     /// The device that it renders on.
     pub fn device(&self) -> &Rc<Device> {
         self.runner.device()

@@ -14,11 +14,13 @@ use super::loader::{Loader, Wake};
 use super::model::{Look, Work, work};
 use super::shortcuts::{self, Command};
 use super::stage::{Counts, Stage};
+use super::study::Study;
 use super::task::{State, Task};
 use super::{control, panels, viewing};
 use crate::Result;
 use crate::gpu::paint::Painter;
 use crate::gpu::{Device, Screen};
+use crate::plan::Plan;
 use crate::scene::{FindOptions, Found};
 
 use files::Files;
@@ -63,6 +65,8 @@ pub struct Shown {
     pub repaint_after: Duration,
     /// What egui asks of the window: cursor, clipboard, …
     pub platform: egui::PlatformOutput,
+    /// Whether frames are to wait for the display.
+    pub vsync: bool,
 }
 
 impl App {
@@ -83,7 +87,7 @@ impl App {
         Ok(Self {
             context,
             painter: Painter::new(device)?,
-            stage: Stage::new(device)?,
+            stage: Stage::new(device, wake.clone())?,
             loader: Loader::new(wake.clone()),
             wake,
             look,
@@ -147,7 +151,18 @@ impl App {
         self.stage.counts()
     }
 
-    /// Where the slider of the control called `name` was drawn last, in points, for scripts to drag.
+    /// The plan of the picture.
+    pub fn plan(&self) -> Option<&Plan> {
+        self.stage.plan()
+    }
+
+    /// What is known of the picture.
+    pub fn study(&self) -> &Study {
+        self.stage.known()
+    }
+
+    /// Where the slider of the control called `name`, or the header of the panel called so, was drawn last, in points,
+    /// for scripts to drag and click.
     pub fn control(&self, name: &str) -> Option<egui::Rect> {
         self.context.data(|data| data.get_temp(control::place(name)))
     }
@@ -174,6 +189,7 @@ impl App {
     pub fn frame(&mut self, input: RawInput, screen: &Screen) -> Result<Shown> {
         self.take_in();
         let context = self.context.clone();
+        self.stage.tick(input.time.unwrap_or_else(|| context.time()));
         let before = self.document().map(Document::known_look);
         let mut output = context.run_ui(input, |ui| self.ui(ui, screen));
         self.settle(before);
@@ -189,6 +205,7 @@ impl App {
         Ok(Shown {
             repaint_after: by_egui.unwrap_or(Duration::MAX).min(again).min(self.next_look()),
             platform: output.platform_output,
+            vsync: panels::vsync(&context),
         })
     }
 
@@ -268,6 +285,15 @@ impl App {
         if problem != self.stage.problem().is_some() {
             again = Duration::ZERO;
         }
+        let held = self.context.egui_is_using_pointer();
+        let moving = still < SETTLED || held || self.stage.counts().spectra > done.spectra;
+        let (news, later) = self.stage.study(document, moving, &self.context)?;
+        if news {
+            again = Duration::ZERO;
+        } else if later && !held {
+            // A frame of its own, where a script and no person changed the look.
+            again = again.min(Duration::from_secs_f64((SETTLED - still).max(0.02)));
+        }
         if let Some(loupe) = self.canvas.loupe {
             self.stage.magnify(document, loupe.center, loupe.side, loupe.before, screen, loupe.region)?;
             let [column, row] = loupe.pixel;
@@ -298,8 +324,8 @@ impl App {
         let placement = self.canvas.placement.as_ref();
         let command = if asks { None } else { shortcuts::apply(ui.ctx(), document, placement) };
         Panel::right("panels").default_size(300.0).show(ui, |ui| panels::show(ui, document, &self.stage));
-        let canvas =
-            CentralPanel::no_frame().show(ui, |ui| canvas::show(ui, document, screen.size(), self.probe.as_ref()));
+        let canvas = CentralPanel::no_frame()
+            .show(ui, |ui| canvas::show(ui, document, &self.stage, screen.size(), self.probe.as_ref()));
         self.canvas = canvas.inner;
         match command {
             Some(Command::Next) => self.current = (self.current + 1) % self.documents.len(),

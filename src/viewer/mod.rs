@@ -10,6 +10,8 @@
 //! | `stage` | the picture on the device; computes what has changed, and nothing else |
 //! | `ask`, `export` | questions for paths, and pictures written in the background |
 //! | `loader` | files, read in the background |
+//! | `timings` | how long the last frames took |
+//! | `study` | what is found out about a picture at rest, in the background |
 //! | `task` | other work in the background |
 //! | `canvas` | the picture under the pointer: moving, magnifying, the lights' handles, the loupe |
 //! | `panels` | the controls, one file a panel |
@@ -30,7 +32,9 @@ pub mod model;
 mod panels;
 mod shortcuts;
 mod stage;
+mod study;
 mod task;
+mod timings;
 mod viewing;
 mod window;
 
@@ -39,5 +43,6 @@ pub use document::{Document, LIVE_PIXELS};
 pub use export::Subject;
 pub use loader::Wake;
 pub use stage::{Counts, Times};
+pub use study::{Cut, CutPoint, Degree, Plot, Study, Wanted};
 pub use viewing::{Placement, Shows, Viewing, Zoom};
 pub use window::run;

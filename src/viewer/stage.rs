@@ -6,7 +6,10 @@ use std::time::Instant;
 use glam::DVec2;
 
 use super::document::Document;
+use super::loader::Wake;
 use super::model::{self, Accuracy, Look, Work};
+use super::study::{Picture, Study};
+use super::timings::Timings;
 use super::viewing::{Placement, Shows};
 use crate::gpu::{Device, Region, Screen};
 use crate::job::{self, Known};
@@ -30,6 +33,8 @@ pub struct Counts {
     pub composites: u64,
     /// Regions of the screen drawn.
     pub views: u64,
+    /// Times that a picture at rest was looked into.
+    pub studies: u64,
 }
 
 /// How long each kind of work last took, in milliseconds; until the device had done it, only where it is software.
@@ -41,6 +46,8 @@ pub struct Times {
     pub spectrum: f64,
     /// Field and composite.
     pub composite: f64,
+    /// Drawing all of the picture on the screen.
+    pub view: f64,
 }
 
 /// What the picture on the device was made from.
@@ -65,14 +72,16 @@ pub struct Stage {
     plan: Option<Plan>,
     counts: Counts,
     times: Times,
+    timings: Timings,
+    study: Study,
 }
 
 impl Stage {
-    /// A stage with nothing on it.
+    /// A stage with nothing on it; `wake` is called when something more is known of the picture.
     ///
     /// # Errors
     /// [`crate::Error::Gl`] where the driver refuses.
-    pub fn new(device: &Rc<Device>) -> Result<Self> {
+    pub fn new(device: &Rc<Device>, wake: Wake) -> Result<Self> {
         Ok(Self {
             renderer: Renderer::new(device)?,
             made: Made::default(),
@@ -80,6 +89,8 @@ impl Stage {
             plan: None,
             counts: Counts::default(),
             times: Times::default(),
+            timings: Timings::default(),
+            study: Study::new(wake),
         })
     }
 
@@ -190,7 +201,50 @@ impl Stage {
             (_, None) => 0.0,
         };
         let view = View { wipe, surround, ..view(document, placement.origin, placement.pitch) };
-        self.draw(&view, screen, placement.region)
+        let started = Instant::now();
+        self.draw(&view, screen, placement.region)?;
+        self.times.view = self.elapsed(started);
+        self.timings.keep(self.counts.composites, self.times);
+        Ok(())
+    }
+
+    /// Looks into the picture as the document wants it, unless it is a preview or `moving`. Says whether there is news
+    /// to be shown, and, while it is moving, whether there is something to begin afterwards.
+    ///
+    /// # Errors
+    /// [`crate::Error::Gl`] where the driver refuses.
+    pub fn study(&mut self, document: &Document, moving: bool, context: &egui::Context) -> Result<(bool, bool)> {
+        let news = self.study.take_in(context);
+        let (Some(plan), Some(scene), Some(_)) = (&self.plan, &self.made.scene, &self.made.look) else {
+            return Ok((news, false));
+        };
+        let picture = Picture { number: self.counts.spectra, ghosts: &scene.ghosts, plan, frame: document.frame };
+        self.study.forget_others(picture.number);
+        let wanted = &document.viewing.wanted;
+        if self.made.preview || !self.study.is_due(picture.number, wanted, picture.frame) {
+            return Ok((news, false));
+        }
+        if moving {
+            return Ok((news, true));
+        }
+        self.counts.studies += 1;
+        let known = self.study.begin(&picture, wanted, &mut self.renderer, context)?;
+        Ok((news || known, false))
+    }
+
+    /// What is known of the picture on the device.
+    pub fn known(&self) -> &Study {
+        &self.study
+    }
+
+    /// How long frames and their parts took.
+    pub fn timings(&self) -> &Timings {
+        &self.timings
+    }
+
+    /// A frame begins, at a time in seconds.
+    pub fn tick(&mut self, time: f64) {
+        self.timings.tick(time);
     }
 
     /// Shows a part of the document again, as the loupe does: `center` of the picture in the middle of a region, each of

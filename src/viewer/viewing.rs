@@ -3,6 +3,7 @@
 use egui::{Pos2, Rect, pos2};
 use glam::DVec2;
 
+use super::study::Wanted;
 use crate::gpu::Region;
 use crate::photo::ToneMap;
 
@@ -48,6 +49,8 @@ pub struct Viewing {
     pub handles: bool,
     /// Whether a loupe is at the pointer.
     pub loupe: bool,
+    /// What is to be found out while it rests.
+    pub wanted: Wanted,
 }
 
 impl Default for Viewing {
@@ -60,6 +63,7 @@ impl Default for Viewing {
             wipe: None,
             handles: true,
             loupe: false,
+            wanted: Wanted::default(),
         }
     }
 }

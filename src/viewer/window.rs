@@ -58,6 +58,7 @@ struct Open {
     input: egui_winit::State,
     state: Option<State>,
     hidden: bool,
+    vsync: bool,
     title: String,
     surface: Surface,
 }
@@ -92,7 +93,7 @@ impl Start {
             Some(app.max_texture_side()),
         );
         let screen = Screen::of_window(&device, window.inner_size().into());
-        Ok(Open { app, screen, input, state, hidden: true, title: String::new(), surface })
+        Ok(Open { app, screen, input, state, hidden: true, vsync: true, title: String::new(), surface })
     }
 }
 
@@ -118,6 +119,11 @@ impl Open {
         }
         let input = self.input.take_egui_input(window);
         let shown = self.app.frame(input, &self.screen)?;
+        if shown.vsync != self.vsync {
+            // A driver may not obey; then it stays as it was.
+            self.surface.set_vsync(shown.vsync);
+            self.vsync = shown.vsync;
+        }
         self.surface.swap()?;
         self.input.handle_platform_output(window, shown.platform);
         let title = self.app.title();

@@ -31,3 +31,4 @@ mod support;
 mod tiles;
 mod view;
 mod viewer;
+mod viewer_panels;

@@ -2,6 +2,7 @@
 
 mod handles;
 mod loupe;
+mod overlay;
 
 use egui::{CursorIcon, Sense, Stroke, Ui, pos2};
 use glam::DVec2;
@@ -9,6 +10,7 @@ use glam::DVec2;
 pub use loupe::{Loupe, Probe};
 
 use super::document::Document;
+use super::stage::Stage;
 use super::viewing::{Placement, Zoom};
 
 /// How far from the wipe's line, in points, it can be taken hold of.
@@ -25,7 +27,7 @@ pub struct Canvas {
 
 /// Lets the pointer move, magnify and drag, and draws what lies over the picture. `screen` is the whole screen's size
 /// in pixels; `probe` what is known of the pixel under the pointer.
-pub fn show(ui: &mut Ui, document: &mut Document, screen: [u32; 2], probe: Option<&Probe>) -> Canvas {
+pub fn show(ui: &mut Ui, document: &mut Document, stage: &Stage, screen: [u32; 2], probe: Option<&Probe>) -> Canvas {
     let rect = ui.available_rect_before_wrap();
     let window = document.frame.window;
     let size = [window.width, window.height];
@@ -56,7 +58,9 @@ pub fn show(ui: &mut Ui, document: &mut Document, screen: [u32; 2], probe: Optio
         };
     }
     let placement = place(document.viewing.zoom).unwrap_or(placement);
+    overlay::error(ui, document, stage, &placement);
     wipe(ui, document, &placement);
+    overlay::cut(ui, document, &placement);
     if document.viewing.handles {
         handles::show(ui, document, &placement);
     }
