@@ -6,8 +6,10 @@ use egui_plot::{Legend, Line, Plot, PlotPoints};
 use crate::viewer::document::Document;
 use crate::viewer::stage::{Stage, Times};
 
-/// Each kind of work, what it is, and its time.
-const PASSES: [(&str, &str, fn(&Times) -> f64); 4] = [
+/// A kind of work, what it is, and its time.
+type Pass = (&'static str, &'static str, fn(&Times) -> f64);
+
+const PASSES: [Pass; 4] = [
     ("plan", "Weighing the ghosts and choosing degree and evaluator, on the CPU", |times| times.plan),
     ("spectrum", "The tables A, B, C, D of all ghosts", |times| times.spectrum),
     ("composite", "The field, its normalisation, and laying it over the photo", |times| times.composite),

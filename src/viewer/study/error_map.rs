@@ -29,7 +29,7 @@ pub fn coarsest(frame: Frame) -> u32 {
 
 /// The step after one of `stride`.
 pub fn finer(stride: u32, frame: Frame) -> Option<u32> {
-    (stride > finest(frame)).then(|| stride / STEP)
+    (stride > finest(frame)).then_some(stride / STEP)
 }
 
 /// The colour of an error in units of the tolerance; magenta beyond it, black from [`DECADES`] below it on.
