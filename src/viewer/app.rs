@@ -4,14 +4,14 @@ use std::path::PathBuf;
 use std::rc::Rc;
 use std::time::Duration;
 
-use egui::{Align, CentralPanel, Color32, Layout, Panel, RawInput, RichText, Ui};
+use egui::{Align, CentralPanel, Color32, Key, Layout, Modifiers, Panel, RawInput, RichText, Ui};
 
 use super::canvas::{self, Canvas, Probe};
 use super::document::Document;
 use super::loader::{Loader, Wake};
 use super::model::{Look, Work, work};
 use super::shortcuts::{self, Command};
-use super::stage::{Counts, Stage};
+use super::stage::{Counts, Stage, Times};
 use super::task::{State, Task};
 use super::{control, panels, viewing};
 use crate::Result;
@@ -57,6 +57,8 @@ pub struct Shown {
     pub repaint_after: Duration,
     /// What egui asks of the window: cursor, clipboard, …
     pub platform: egui::PlatformOutput,
+    /// Whether the window is to close.
+    pub close: bool,
 }
 
 impl App {
@@ -140,6 +142,11 @@ impl App {
         self.stage.counts()
     }
 
+    /// How long each kind of work last took.
+    pub fn times(&self) -> Times {
+        self.stage.times()
+    }
+
     /// Where the slider of the control called `name` was drawn last, in points, for scripts to drag.
     pub fn control(&self, name: &str) -> Option<egui::Rect> {
         self.context.data(|data| data.get_temp(control::place(name)))
@@ -178,8 +185,13 @@ impl App {
         });
         let shapes = context.tessellate(output.shapes, output.pixels_per_point);
         self.painter.paint(screen, output.pixels_per_point, &shapes, &mut output.textures_delta);
+        let close = context.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::Q));
         let by_egui = output.viewport_output.values().map(|viewport| viewport.repaint_delay).min();
-        Ok(Shown { repaint_after: by_egui.unwrap_or(Duration::MAX).min(again), platform: output.platform_output })
+        Ok(Shown {
+            repaint_after: by_egui.unwrap_or(Duration::MAX).min(again),
+            platform: output.platform_output,
+            close,
+        })
     }
 
     /// Takes what was read in the background.

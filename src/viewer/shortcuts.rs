@@ -8,7 +8,7 @@ use super::viewing::{MOST_EXPOSURE, Placement, Shows, Zoom};
 use crate::photo::ToneMap;
 
 /// Keys and what they do, for the list that a person can read.
-pub const KEYS: [(&str, &str); 13] = [
+pub const KEYS: [(&str, &str); 14] = [
     ("F, 1", "fit the photo to the window; a pixel to a pixel"),
     ("+, −", "magnify, make smaller"),
     ("B", "the photo as it was, and back"),
@@ -22,6 +22,7 @@ pub const KEYS: [(&str, &str); 13] = [
     ("M, Delete", "mute, delete the selected light"),
     ("Ctrl+Z, Ctrl+Shift+Z", "undo; redo, as Ctrl+Y does"),
     ("Ctrl+Tab, Ctrl+W", "the next photo; close this one"),
+    ("Ctrl+Q", "close the window"),
 ];
 
 /// What keys ask of the window rather than of one document.

@@ -20,7 +20,7 @@ use crate::{Error, Result};
 const PREVIEW_TOLERANCE: f64 = 1e-2;
 
 /// How often each kind of work was done.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct Counts {
     /// Photos that went to the device.
     pub uploads: u64,
@@ -33,7 +33,7 @@ pub struct Counts {
 }
 
 /// How long each kind of work last took, in milliseconds; until the device had done it, only where it is software.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
 pub struct Times {
     /// Planning.
     pub plan: f64,
@@ -56,9 +56,19 @@ struct Made {
     preview: bool,
 }
 
+/// What the canvas shows: a view, of which picture.
+#[derive(PartialEq)]
+struct Shown {
+    view: View,
+    uploads: u64,
+    composites: u64,
+}
+
 /// Renders the current document.
 pub struct Stage {
     renderer: Renderer,
+    /// The canvas as it was last drawn: where only a panel changes, it is copied.
+    canvas: Option<(Screen, Shown)>,
     made: Made,
     /// What `vglare calibrate` measured on this device.
     known: Known,
@@ -75,6 +85,7 @@ impl Stage {
     pub fn new(device: &Rc<Device>) -> Result<Self> {
         Ok(Self {
             renderer: Renderer::new(device)?,
+            canvas: None,
             made: Made::default(),
             known: Known::of(device.info()),
             plan: None,
@@ -190,7 +201,21 @@ impl Stage {
             (_, None) => 0.0,
         };
         let view = View { wipe, surround, ..view(document, placement.origin, placement.pitch) };
-        self.draw(&view, screen, placement.region)
+        let region = placement.region;
+        let shown = Shown { view, uploads: self.counts.uploads, composites: self.counts.composites };
+        let size = [region.width, region.height];
+        let canvas = match self.canvas.take() {
+            Some((canvas, was)) if was == shown && canvas.size() == size => canvas,
+            old => {
+                let reused = old.map(|(canvas, _)| canvas).filter(|canvas| canvas.size() == size);
+                let canvas = reused.map_or_else(|| Screen::hidden(self.renderer.device(), size), Ok)?;
+                self.draw(&view, &canvas, canvas.whole())?;
+                canvas
+            }
+        };
+        canvas.copy_to(screen, region);
+        self.canvas = Some((canvas, shown));
+        Ok(())
     }
 
     /// Shows a part of the document again, as the loupe does: `center` of the picture in the middle of a region, each of
@@ -226,6 +251,7 @@ impl Stage {
     /// Leaves the stage empty, so that everything is computed anew.
     pub fn clear(&mut self) {
         self.made = Made::default();
+        self.canvas = None;
         self.renderer.unload();
         self.renderer.forget_scene();
         self.plan = None;

@@ -31,3 +31,5 @@ mod support;
 mod tiles;
 mod view;
 mod viewer;
+mod viewer_fuzz;
+mod window;
