@@ -1,5 +1,7 @@
 //! The whole window but the window: what is open, and one frame of it on a screen.
 
+mod files;
+
 use std::path::PathBuf;
 use std::rc::Rc;
 use std::time::Duration;
@@ -19,6 +21,9 @@ use crate::gpu::paint::Painter;
 use crate::gpu::{Device, Screen};
 use crate::scene::{FindOptions, Found};
 
+use files::Files;
+pub(super) use files::LookFile;
+
 /// Milliseconds of plan, spectrum and composite from which on a drag is shown by previews.
 const SLOW: f64 = 33.0;
 /// For how long nothing must change before a preview is replaced while the pointer still holds on, in seconds.
@@ -33,6 +38,7 @@ pub struct App {
     wake: Wake,
     look: Look,
     search: Option<Search>,
+    files: Files,
     documents: Vec<(u64, Document)>,
     current: usize,
     next: u64,
@@ -84,6 +90,7 @@ impl App {
             wake,
             look,
             search: None,
+            files: Files::default(),
             documents: Vec::new(),
             current: 0,
             next: 0,
@@ -198,10 +205,14 @@ impl App {
     fn take_in(&mut self) {
         for result in self.loader.take() {
             match result {
-                Ok(document) => self.add(document),
+                Ok(document) => {
+                    self.remember_photo(&document.path);
+                    self.add(document);
+                }
                 Err(error) => self.notice(error.to_string()),
             }
         }
+        self.take_in_files();
         if let Some(Search { document, options, task }) = self.search.take() {
             match task.poll() {
                 State::Running => self.search = Some(Search { document, options, task }),
@@ -235,6 +246,9 @@ impl App {
                 }
                 Err(error) => self.notice(format!("the photo cannot be searched: {error}")),
             }
+        }
+        if !gesture {
+            self.remember_look();
         }
     }
 
@@ -280,15 +294,13 @@ impl App {
     fn ui(&mut self, ui: &mut Ui, screen: &Screen) {
         let dropped = ui.input(|input| input.raw.dropped_files.clone());
         dropped.iter().for_each(|file| self.open(file.path().to_owned()));
+        self.bar(ui);
         self.tabs(ui);
         self.strips(ui);
+        self.exports(ui);
         let Some((_, document)) = self.documents.get_mut(self.current) else {
             self.canvas = Canvas::default();
-            CentralPanel::default().show(ui, |ui| {
-                ui.with_layout(Layout::centered_and_justified(egui::Direction::TopDown), |ui| {
-                    ui.label("Drop photos here");
-                });
-            });
+            self.start(ui);
             return;
         };
         let command = shortcuts::apply(ui.ctx(), document, self.canvas.placement.as_ref());

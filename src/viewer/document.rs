@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec2};
 
+use super::app::LookFile;
 use super::model::{History, Look};
 use super::viewing::Viewing;
 use crate::Result;
@@ -38,6 +39,8 @@ pub struct Document {
     /// What is set; a change becomes a step of the history by [`Document::record`].
     pub look: Look,
     history: History,
+    /// The scene file of the look, if it has one.
+    pub(super) file: Option<LookFile>,
     /// What was set when it was opened.
     pub opened: Look,
     /// How it is looked at.
@@ -72,6 +75,7 @@ impl Document {
             shrunk,
             means,
             history: History::new(look.clone()),
+            file: None,
             opened: look.clone(),
             look,
             viewing: Viewing::default(),
@@ -125,6 +129,12 @@ impl Document {
         if !gesture {
             self.history.commit();
         }
+    }
+
+    /// Sets another look altogether.
+    pub fn set_look(&mut self, look: Look) {
+        self.look = look;
+        self.drop_selection();
     }
 
     /// Goes a step back.

@@ -8,6 +8,7 @@
 //! | `model` | what a person sets of the glare: looks, their history, their command line; no egui, no GL |
 //! | `viewing` | what a person sets of the view, and where pixels lie on the screen for it |
 //! | `stage` | the picture on the device; computes what has changed, and nothing else |
+//! | `ask`, `export` | questions for paths, and pictures written in the background |
 //! | `loader` | files, read in the background |
 //! | `task` | other work in the background |
 //! | `canvas` | the picture under the pointer: moving, magnifying, the lights' handles, the loupe |
@@ -20,9 +21,11 @@
 //! screen, and egui's shapes are painted over it.
 
 mod app;
+mod ask;
 mod canvas;
 mod control;
 mod document;
+mod export;
 mod loader;
 pub mod model;
 mod panels;
@@ -35,6 +38,7 @@ mod window;
 
 pub use app::{App, Shown};
 pub use document::{Document, LIVE_PIXELS};
+pub use export::Subject;
 pub use loader::Wake;
 pub use stage::{Counts, Times};
 pub use viewing::{Placement, Shows, Viewing, Zoom};

@@ -226,6 +226,7 @@ impl Player {
                 unit: MouseWheelUnit::Point,
                 delta: Vec2::new(0.0, *points),
                 phase: TouchPhase::Move,
+                source: egui::MouseWheelSource::Wheel,
                 modifiers: Modifiers::NONE,
             }])?,
             Step::Key { key, ctrl, shift } => self.key(key, *ctrl, *shift)?,
@@ -339,7 +340,7 @@ impl Player {
         let modifiers = Modifiers { ctrl, shift, command: ctrl, ..Modifiers::NONE };
         for pressed in [true, false] {
             let event = Event::Key { key, physical_key: None, pressed, repeat: false, modifiers };
-            self.frame_with(RawInput { events: vec![event], modifiers, ..RawInput::default() })?;
+            self.frame(vec![event])?;
         }
         Ok(())
     }

@@ -11,7 +11,7 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy};
 use winit::window::{Window, WindowId};
 
 use super::app::App;
-use super::model::Look;
+use super::model::{Look, State};
 use crate::gpu::{Display, Screen, Surface, event_loop};
 use crate::{Error, Result};
 
@@ -88,6 +88,10 @@ impl Start {
             let _ = proxy.send_event(Wanted);
         });
         let mut app = App::new(&device, self.look, wake)?;
+        // Without a home nothing is remembered.
+        if let Ok(state) = State::of_user() {
+            app.remember(state);
+        }
         self.photos.into_iter().for_each(|path| app.open(path));
         let window = surface.window();
         let input = egui_winit::State::new(

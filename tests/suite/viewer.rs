@@ -1,5 +1,7 @@
 //! The window without a window: events in, state and pixels out, and nothing computed that did not change.
 
+mod files;
+
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -22,6 +24,7 @@ struct Session {
     screen: Screen,
     time: f64,
     due: Duration,
+    copied: Vec<String>,
 }
 
 impl Session {
@@ -29,7 +32,7 @@ impl Session {
         let device = Device::open(&Backend::ALL).unwrap();
         let app = App::new(&device, Look::default(), Arc::new(|| {})).unwrap();
         let screen = Screen::hidden(&device, SIZE).unwrap();
-        Self { app, screen, time: 0.0, due: Duration::ZERO }
+        Self { app, screen, time: 0.0, due: Duration::ZERO, copied: Vec::new() }
     }
 
     /// With a synthetic photo open.
@@ -45,7 +48,24 @@ impl Session {
         let rect = Rect::from_min_size(Pos2::ZERO, vec2(SIZE[0] as f32, SIZE[1] as f32));
         let time = Some(self.time);
         let input = RawInput { screen_rect: Some(rect), time, events, focused: true, ..RawInput::default() };
-        self.due = self.app.frame(input, &self.screen).unwrap().repaint_after;
+        let shown = self.app.frame(input, &self.screen).unwrap();
+        self.due = shown.repaint_after;
+        let copied = shown.platform.commands.into_iter().filter_map(|command| match command {
+            egui::OutputCommand::CopyText(text) => Some(text),
+            _ => None,
+        });
+        self.copied.extend(copied);
+    }
+
+    /// Frames until what goes on in the background has come to an end.
+    fn wait(&mut self, until: impl Fn(&App) -> bool) {
+        let started = Instant::now();
+        while !until(&self.app) {
+            assert!(started.elapsed() < Duration::from_secs(60), "it never comes to an end");
+            std::thread::sleep(Duration::from_millis(5));
+            self.frame(Vec::new());
+        }
+        self.settle();
     }
 
     /// Frames until nothing moves any more.
@@ -194,14 +214,8 @@ fn a_bad_file_is_told_of_and_the_picture_stays() {
     let mut session = Session::new();
     for path in [good, folder.path().join("missing.exr")] {
         session.app.open(path);
-        let started = Instant::now();
-        while session.app.is_reading() {
-            assert!(started.elapsed() < Duration::from_secs(20), "it is never read");
-            std::thread::sleep(Duration::from_millis(5));
-            session.frame(Vec::new());
-        }
+        session.wait(|app| !app.is_reading());
     }
-    session.settle();
     assert_eq!(session.document().name(), "good.exr");
     assert!(session.app.notices().len() == 1 && session.app.notices()[0].contains("missing.exr"));
     let lit = session.at(session.document().lights()[0].position);
@@ -251,13 +265,7 @@ fn other_rules_search_the_photo_anew() {
     let mut session = Session::with_photo();
     assert_eq!(session.document().lights().len(), 1);
     session.app.document_mut().unwrap().look.find.threshold = Some(1e6);
-    let started = Instant::now();
-    while session.document().wants_search() {
-        assert!(started.elapsed() < Duration::from_secs(20), "it is never searched");
-        std::thread::sleep(Duration::from_millis(5));
-        session.frame(Vec::new());
-    }
-    session.settle();
+    session.wait(|app| !app.document().unwrap().wants_search());
     assert!(session.document().lights().is_empty());
     assert_eq!(session.app.counts().spectra, 2);
     session.shortcut(CTRL, Key::Z);

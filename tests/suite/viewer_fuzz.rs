@@ -5,7 +5,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, TouchPhase, pos2, vec2};
+use egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, TouchPhase, pos2, vec2};
 use vglare::gpu::{Backend, Device};
 use vglare::look::Look;
 use vglare::photo::Photo;
@@ -65,8 +65,9 @@ impl Chance {
             }
             7 => {
                 let (unit, phase) = (MouseWheelUnit::Point, TouchPhase::Move);
+                let source = MouseWheelSource::Wheel;
                 let delta = vec2(0.0, self.below(400) as f32 - 200.0);
-                Event::MouseWheel { unit, delta, phase, modifiers }
+                Event::MouseWheel { unit, delta, phase, source, modifiers }
             }
             8 => {
                 let key = KEYS[self.below(KEYS.len() as u64) as usize];

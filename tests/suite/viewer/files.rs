@@ -1,0 +1,137 @@
+//! Looks and pictures in and out of the window.
+
+use std::path::PathBuf;
+use std::process::Command;
+
+use tempfile::TempDir;
+use vglare::viewer::Subject;
+use vglare::viewer::model::State;
+
+use super::*;
+
+/// A folder with the lamp's photo in it, open.
+fn in_a_folder() -> (TempDir, Session) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("lamp.exr");
+    photo::write(&path, &lamp(), &WriteOptions::default()).unwrap();
+    let mut session = Session::new();
+    session.app.remember(State::in_folder(folder.path().join("state")));
+    session.app.open(path);
+    session.wait(|app| !app.is_reading());
+    (folder, session)
+}
+
+fn apply(photo: &Path, output: &Path, look: &Path) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_vglare"));
+    command.args(["apply", "--quiet"]).arg(photo).arg("-o").arg(output).arg("--scene").arg(look);
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn the_window_writes_what_apply_writes_of_the_saved_look() {
+    let (folder, mut session) = in_a_folder();
+    let path = |name: &str| folder.path().join(name);
+    let from = session.at(session.document().lights()[0].position);
+    session.drag(from, vec2(40.0, 20.0));
+    session.app.document_mut().unwrap().look.strength = 1.7;
+    session.app.save_look(&path("look.toml"));
+    session.app.export(Subject::Picture, &path("window.exr"));
+    session.wait(|app| !app.is_writing());
+    assert_eq!(session.app.notices(), [] as [String; 0]);
+    apply(&path("lamp.exr"), &path("apply.exr"), &path("look.toml"));
+    let [window, apply, photo] = ["window.exr", "apply.exr", "lamp.exr"].map(|name| std::fs::read(path(name)).unwrap());
+    assert!(window == apply, "the files differ");
+    assert!(window != photo, "there is glare in them");
+}
+
+#[test]
+fn the_picture_is_saved_under_the_name_that_is_typed() {
+    let (folder, mut session) = in_a_folder();
+    session.shortcut(CTRL, Key::S);
+    session.press(Key::Enter);
+    session.wait(|app| !app.is_writing());
+    assert_eq!(session.app.notices(), [] as [String; 0]);
+    let written = folder.path().join("lamp-glare.exr");
+    assert_eq!(photo::read(&written).unwrap().pixels.len(), lamp().pixels.len());
+    // Now that it is there, Enter alone does not replace it.
+    std::fs::write(&written, "precious").unwrap();
+    session.shortcut(CTRL, Key::S);
+    session.press(Key::Enter);
+    session.wait(|app| !app.is_writing());
+    assert_eq!(std::fs::read(&written).unwrap(), b"precious");
+}
+
+#[test]
+fn a_picture_that_cannot_be_written_is_told_of_and_leaves_nothing() {
+    let (folder, mut session) = in_a_folder();
+    session.app.export(Subject::Glare, &folder.path().join("none/glare.exr"));
+    session.app.export(Subject::Picture, &folder.path().join("picture.docx"));
+    session.wait(|app| !app.is_writing());
+    assert_eq!(session.app.notices().len(), 2, "{:?}", session.app.notices());
+    let names = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect::<Vec<_>>();
+    assert!(names.len() == 2 && names.contains(&"lamp.exr".into()) && names.contains(&"state".into()), "{names:?}");
+}
+
+#[test]
+fn a_bad_look_is_told_of_and_the_old_one_stays() {
+    let (folder, mut session) = in_a_folder();
+    let path = folder.path().join("look.toml");
+    std::fs::write(&path, "[look]\nstrength = 2.5\n").unwrap();
+    session.app.open_look(&path);
+    session.settle();
+    assert_eq!(session.document().look.strength, 2.5);
+    let looked = session.document().look.clone();
+    std::fs::write(folder.path().join("bad.toml"), "[look]\nstrength = -1\n").unwrap();
+    session.app.open_look(&folder.path().join("bad.toml"));
+    session.settle();
+    assert_eq!(session.document().look, looked);
+    assert!(session.app.notices().len() == 1 && session.app.notices()[0].contains("bad.toml: line 2"));
+    session.shortcut(CTRL, Key::Z);
+    assert_eq!(session.document().look, Look::default());
+}
+
+#[test]
+fn a_look_that_changes_on_disk_is_read_again() {
+    let (folder, mut session) = in_a_folder();
+    let path = folder.path().join("look.toml");
+    std::fs::write(&path, "[look]\nstrength = 2.5\n").unwrap();
+    session.app.open_look(&path);
+    session.settle();
+    std::fs::write(&path, "[look]\nstrength = 3.5\n").unwrap();
+    let later = std::time::SystemTime::now() + Duration::from_secs(5);
+    std::fs::File::options().write(true).open(&path).unwrap().set_modified(later).unwrap();
+    session.settle();
+    assert_eq!(session.document().look.strength, 3.5);
+}
+
+#[test]
+fn the_command_line_is_copied_where_there_is_one() {
+    let (folder, mut session) = in_a_folder();
+    session.app.document_mut().unwrap().look.strength = 0.5;
+    session.shortcut(CTRL | Modifiers::SHIFT, Key::C);
+    let words = shlex::split(&session.copied[0]).unwrap();
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let expected = ["vglare", "apply", &path("lamp.exr"), "-o", &path("lamp-glare.exr"), "--strength", "0.5"];
+    assert_eq!(words, expected);
+    // A light by hand needs a file.
+    session.app.document_mut().unwrap().lights_mut().clear();
+    session.shortcut(CTRL | Modifiers::SHIFT, Key::C);
+    assert!(session.copied.len() == 1 && session.app.notices()[0].contains("save the look first"));
+    session.app.save_look(&folder.path().join("look.toml"));
+    session.shortcut(CTRL | Modifiers::SHIFT, Key::C);
+    assert!(session.copied[1].ends_with(&format!("--scene {}", path("look.toml"))), "{}", session.copied[1]);
+}
+
+#[test]
+fn photos_and_looks_are_remembered() {
+    let (folder, mut session) = in_a_folder();
+    session.app.document_mut().unwrap().look.size = 1.5;
+    session.settle();
+    let state = State::in_folder(folder.path().join("state"));
+    assert_eq!(state.look().unwrap().unwrap().size, 1.5);
+    let mut next = Session::new();
+    next.app.remember(state);
+    next.settle();
+    assert_eq!(next.app.recent(), [folder.path().join("lamp.exr")] as [PathBuf; 1]);
+}
