@@ -29,6 +29,10 @@ pub enum Error {
     #[error("{}: {reason}", path.display())]
     SceneFile { path: PathBuf, reason: String },
 
+    /// A script for the window that cannot be read or played.
+    #[error("{}: {reason}", path.display())]
+    Script { path: PathBuf, reason: String },
+
     /// No lens preset has this name.
     #[error("no lens preset is called {name:?}; there are {}", known.join(", "))]
     UnknownPreset { name: String, known: Vec<String> },

@@ -5,6 +5,7 @@ mod choices;
 mod exchange;
 mod first;
 mod gaussians;
+mod live;
 mod many;
 mod report;
 pub(super) mod scenes;
@@ -63,6 +64,10 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000), conflicts_with = "gaussians")]
     scenes: Option<u32>,
 
+    /// Measure nothing but frames of the window, without a window: a slider and a light that are dragged
+    #[arg(long, conflicts_with_all = ["gaussians", "scenes", "rounds", "quick"])]
+    viewer: bool,
+
     /// Write the rows of all tables to this file too
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -88,7 +93,8 @@ Examples:
   vglare bench                              What does a 1080p frame cost here?
   vglare bench --quick --backend osmesa     A quick look at Mesa's software renderer
   vglare bench --size 3840x2160 --csv 4k.csv
-  vglare bench --gaussians 1000 --json 1000.json";
+  vglare bench --gaussians 1000 --json 1000.json
+  vglare bench --viewer --strict            Are drags in the window fluent here?";
 
 fn part(text: &str) -> Result<f64, String> {
     match text.parse() {
@@ -146,6 +152,10 @@ fn measure(args: &Args) -> Result<Report> {
     }
     if let Some(count) = args.scenes {
         choices::of_random_scenes(&stage, &mut report, count)?;
+        return Ok(report);
+    }
+    if args.viewer {
+        live::window(stage.shared_device(), args.size, &mut report)?;
         return Ok(report);
     }
     first::frame(&stage, opened, &mut report)?;

@@ -2,9 +2,12 @@
 
 use std::path::PathBuf;
 
+use super::BackendChoice;
+use crate::gpu::Device;
 use crate::look::{Look, LookLens};
 use crate::scene::presets::DEFAULT_PRESET;
 use crate::scene::read_scene;
+use crate::viewer::replay;
 use crate::{Result, viewer};
 
 /// Open photos in a window, where the glare can be set by hand and seen at once
@@ -24,6 +27,18 @@ pub struct Args {
     /// The look that photos are opened with, as a scene file; see docs/scenes.md
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
+
+    /// Play a script without a window; see src/viewer/replay.rs
+    #[arg(long, value_name = "FILE", hide = true, requires = "script_output")]
+    script: Option<PathBuf>,
+
+    /// The folder for what came of each of its steps
+    #[arg(long, value_name = "FOLDER", hide = true, requires = "script")]
+    script_output: Option<PathBuf>,
+
+    /// Where its OpenGL comes from
+    #[arg(long, value_enum, hide = true, default_value_t = BackendChoice::Auto, requires = "script")]
+    backend: BackendChoice,
 }
 
 /// Shows the window until it is closed.
@@ -35,5 +50,9 @@ pub fn run(args: &Args) -> Result<()> {
         Some(path) => Look::from_scene(read_scene(path)?)?,
         None => Look { lens: LookLens::preset(&args.preset)?, ..Look::default() },
     };
+    if let (Some(script), Some(output)) = (&args.script, &args.script_output) {
+        let device = Device::open(args.backend.backends())?;
+        return replay::play(&device, &args.photos, look, script, output);
+    }
     viewer::run(&args.photos, look)
 }

@@ -111,6 +111,21 @@ impl Screen {
         unsafe { gl.clear_buffer_f32_slice(glow::COLOR, 0, &[red, green, blue, 1.0]) }
     }
 
+    /// Copies all of it to a region of another screen; the two are of one size.
+    pub fn copy_to(&self, screen: &Self, region: Region) {
+        screen.target(region);
+        let (left, right) = (region.x as i32, (region.x + region.width) as i32);
+        let bottom = screen.size[1] as i32 - (region.y + region.height) as i32;
+        let top = bottom + region.height as i32;
+        let [width, height] = self.size.map(|side| side as i32);
+        let gl = self.device.gl();
+        unsafe {
+            gl.bind_framebuffer(glow::READ_FRAMEBUFFER, self.own.map(|(framebuffer, _)| framebuffer));
+            let (colour, filter) = (glow::COLOR_BUFFER_BIT, glow::NEAREST);
+            gl.blit_framebuffer(0, 0, width, height, left, bottom, right, top, colour, filter);
+        }
+    }
+
     /// What is on the screen, row by row from the top, after waiting for the device.
     pub fn read(&self) -> Vec<[u8; 4]> {
         self.target(self.whole());

@@ -6,14 +6,14 @@ use std::path::PathBuf;
 use std::rc::Rc;
 use std::time::Duration;
 
-use egui::{Align, CentralPanel, Color32, Layout, Panel, RawInput, RichText, Ui};
+use egui::{Align, CentralPanel, Color32, Key, Layout, Modifiers, Panel, RawInput, RichText, Ui};
 
 use super::canvas::{self, Canvas, Probe};
 use super::document::Document;
 use super::loader::{Loader, Wake};
 use super::model::{Look, Work, work};
 use super::shortcuts::{self, Command};
-use super::stage::{Counts, Stage};
+use super::stage::{Counts, Stage, Times};
 use super::study::Study;
 use super::task::{State, Task};
 use super::{control, panels, viewing};
@@ -67,6 +67,8 @@ pub struct Shown {
     pub platform: egui::PlatformOutput,
     /// Whether frames are to wait for the display.
     pub vsync: bool,
+    /// Whether the window is to close.
+    pub close: bool,
 }
 
 impl App {
@@ -151,6 +153,11 @@ impl App {
         self.stage.counts()
     }
 
+    /// How long each kind of work last took.
+    pub fn times(&self) -> Times {
+        self.stage.times()
+    }
+
     /// The plan of the picture.
     pub fn plan(&self) -> Option<&Plan> {
         self.stage.plan()
@@ -201,11 +208,13 @@ impl App {
         });
         let shapes = context.tessellate(output.shapes, output.pixels_per_point);
         self.painter.paint(screen, output.pixels_per_point, &shapes, &mut output.textures_delta);
+        let close = context.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::Q));
         let by_egui = output.viewport_output.values().map(|viewport| viewport.repaint_delay).min();
         Ok(Shown {
             repaint_after: by_egui.unwrap_or(Duration::MAX).min(again).min(self.next_look()),
             platform: output.platform_output,
             vsync: panels::vsync(&context),
+            close,
         })
     }
 

@@ -16,6 +16,7 @@
 //! | `canvas` | the picture under the pointer: moving, magnifying, the lights' handles, the loupe |
 //! | `panels` | the controls, one file a panel |
 //! | `control` | what every control has: a name, a unit, a range, a way back |
+//! | `replay` | scripts of what a person does, played without a window |
 //! | `shortcuts` | the keyboard |
 //!
 //! A frame runs egui, which changes the document; then the stage is brought up to date with the document, shown on the
@@ -30,6 +31,7 @@ mod export;
 mod loader;
 pub mod model;
 mod panels;
+pub mod replay;
 mod shortcuts;
 mod stage;
 mod study;

@@ -8,7 +8,7 @@ use super::viewing::{MOST_EXPOSURE, Placement, Shows, Zoom};
 use crate::photo::ToneMap;
 
 /// Keys and what they do, for the list that a person can read.
-pub const KEYS: [(&str, &str); 15] = [
+pub const KEYS: [(&str, &str); 16] = [
     ("F, 1", "fit the photo to the window; a pixel to a pixel"),
     ("+, −", "magnify, make smaller"),
     ("B", "the photo as it was, and back"),
@@ -24,6 +24,7 @@ pub const KEYS: [(&str, &str); 15] = [
     ("Ctrl+Shift+S, Ctrl+Shift+C", "save the look; copy the command line"),
     ("Ctrl+Z, Ctrl+Shift+Z", "undo; redo, as Ctrl+Y does"),
     ("Ctrl+Tab, Ctrl+W", "the next photo; close this one"),
+    ("Ctrl+Q", "close the window"),
 ];
 
 /// What keys ask of the window rather than of one document.

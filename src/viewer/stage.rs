@@ -23,7 +23,7 @@ use crate::{Error, Result};
 const PREVIEW_TOLERANCE: f64 = 1e-2;
 
 /// How often each kind of work was done.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 pub struct Counts {
     /// Photos that went to the device.
     pub uploads: u64,
@@ -38,7 +38,7 @@ pub struct Counts {
 }
 
 /// How long each kind of work last took, in milliseconds; until the device had done it, only where it is software.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
 pub struct Times {
     /// Planning.
     pub plan: f64,
@@ -63,9 +63,19 @@ struct Made {
     preview: bool,
 }
 
+/// What the canvas shows: a view, of which picture.
+#[derive(PartialEq)]
+struct Shown {
+    view: View,
+    uploads: u64,
+    composites: u64,
+}
+
 /// Renders the current document.
 pub struct Stage {
     renderer: Renderer,
+    /// The canvas as it was last drawn: where only a panel changes, it is copied.
+    canvas: Option<(Screen, Shown)>,
     made: Made,
     /// What `vglare calibrate` measured on this device.
     known: Known,
@@ -84,6 +94,7 @@ impl Stage {
     pub fn new(device: &Rc<Device>, wake: Wake) -> Result<Self> {
         Ok(Self {
             renderer: Renderer::new(device)?,
+            canvas: None,
             made: Made::default(),
             known: Known::of(device.info()),
             plan: None,
@@ -202,7 +213,20 @@ impl Stage {
         };
         let view = View { wipe, surround, ..view(document, placement.origin, placement.pitch) };
         let started = Instant::now();
-        self.draw(&view, screen, placement.region)?;
+        let region = placement.region;
+        let shown = Shown { view, uploads: self.counts.uploads, composites: self.counts.composites };
+        let size = [region.width, region.height];
+        let canvas = match self.canvas.take() {
+            Some((canvas, was)) if was == shown && canvas.size() == size => canvas,
+            old => {
+                let reused = old.map(|(canvas, _)| canvas).filter(|canvas| canvas.size() == size);
+                let canvas = reused.map_or_else(|| Screen::hidden(self.renderer.device(), size), Ok)?;
+                self.draw(&view, &canvas, canvas.whole())?;
+                canvas
+            }
+        };
+        canvas.copy_to(screen, region);
+        self.canvas = Some((canvas, shown));
         self.times.view = self.elapsed(started);
         self.timings.keep(self.counts.composites, self.times);
         Ok(())
@@ -280,6 +304,7 @@ impl Stage {
     /// Leaves the stage empty, so that everything is computed anew.
     pub fn clear(&mut self) {
         self.made = Made::default();
+        self.canvas = None;
         self.renderer.unload();
         self.renderer.forget_scene();
         self.plan = None;

@@ -59,8 +59,20 @@ struct Open {
     state: Option<State>,
     hidden: bool,
     vsync: bool,
+    /// Whether nothing of it is seen, minimised or behind others.
+    occluded: bool,
     title: String,
     surface: Surface,
+}
+
+/// What follows a frame.
+enum Next {
+    /// Nothing until something happens.
+    Event,
+    /// Another frame, then.
+    Frame(Instant),
+    /// The window closes.
+    Close,
 }
 
 impl Start {
@@ -93,7 +105,17 @@ impl Start {
             Some(app.max_texture_side()),
         );
         let screen = Screen::of_window(&device, window.inner_size().into());
-        Ok(Open { app, screen, input, state, hidden: true, vsync: true, title: String::new(), surface })
+        Ok(Open {
+            app,
+            screen,
+            input,
+            state,
+            hidden: true,
+            vsync: true,
+            occluded: false,
+            title: String::new(),
+            surface,
+        })
     }
 }
 
@@ -105,13 +127,13 @@ impl Open {
         let _ = self.state.as_ref().map(|state| state.keep_size([size.width, size.height]));
     }
 
-    /// Draws a frame; says when the next one is due.
-    fn frame(&mut self) -> Result<Option<Instant>> {
+    /// Draws a frame; says what comes next.
+    fn frame(&mut self) -> Result<Next> {
         let window = self.surface.window();
         let size: [u32; 2] = window.inner_size().into();
-        // A window without pixels shows nothing; the next event that gives it some draws it.
-        if size.contains(&0) {
-            return Ok(None);
+        // A window of which nothing is seen shows nothing; the event that ends that draws it.
+        if size.contains(&0) || self.occluded {
+            return Ok(Next::Event);
         }
         if size != self.screen.size() {
             self.surface.resize(size);
@@ -134,7 +156,8 @@ impl Open {
         if std::mem::take(&mut self.hidden) {
             window.set_visible(true);
         }
-        Ok(Instant::now().checked_add(shown.repaint_after))
+        let due = Instant::now().checked_add(shown.repaint_after);
+        Ok(if shown.close { Next::Close } else { due.map_or(Next::Event, Next::Frame) })
     }
 }
 
@@ -147,11 +170,12 @@ impl Viewer {
     fn redraw(&mut self, event_loop: &ActiveEventLoop) {
         let Some(open) = &mut self.open else { return };
         match open.frame() {
-            Ok(None) => event_loop.set_control_flow(ControlFlow::Wait),
-            Ok(Some(due)) if due.saturating_duration_since(Instant::now()) < Duration::from_millis(1) => {
+            Ok(Next::Close) => event_loop.exit(),
+            Ok(Next::Event) => event_loop.set_control_flow(ControlFlow::Wait),
+            Ok(Next::Frame(due)) if due.saturating_duration_since(Instant::now()) < Duration::from_millis(1) => {
                 open.surface.window().request_redraw();
             }
-            Ok(Some(due)) => event_loop.set_control_flow(ControlFlow::WaitUntil(due)),
+            Ok(Next::Frame(due)) => event_loop.set_control_flow(ControlFlow::WaitUntil(due)),
             Err(error) => self.fail(event_loop, error),
         }
     }
@@ -192,6 +216,12 @@ impl ApplicationHandler<Wanted> for Viewer {
                 event_loop.exit();
             }
             WindowEvent::RedrawRequested => self.redraw(event_loop),
+            WindowEvent::Occluded(occluded) => {
+                open.occluded = occluded;
+                if !occluded {
+                    open.surface.window().request_redraw();
+                }
+            }
             event => {
                 if open.input.on_window_event(open.surface.window(), &event).repaint {
                     open.surface.window().request_redraw();

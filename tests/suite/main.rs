@@ -31,4 +31,6 @@ mod support;
 mod tiles;
 mod view;
 mod viewer;
+mod viewer_fuzz;
 mod viewer_panels;
+mod window;

@@ -185,9 +185,8 @@ fn the_cross_section_is_the_field_and_the_truth_along_the_line() {
             let [i, j] = point.pixel.map(f64::from);
             let exact = reference::direct(&ghosts, document.frame.position(i, j));
             assert_eq!(point.exact, exact);
-            for colour in 0..3 {
-                let error = (point.rendered[colour] - exact[colour]).abs();
-                assert!(error <= plan.predicted.total() * plan.scale[colour] * 1.01, "{point:?}");
+            for ((rendered, exact), scale) in point.rendered.iter().zip(exact).zip(plan.scale) {
+                assert!((rendered - exact).abs() <= 1.01 * scale * plan.predicted.total(), "{point:?}");
             }
         }
     }

@@ -47,6 +47,11 @@ impl Stage {
         &self.device
     }
 
+    /// The device, for what keeps it.
+    pub fn shared_device(&self) -> &Rc<Device> {
+        &self.device
+    }
+
     /// What is asked of a plan whose choices are to be measured here.
     pub fn request(&self, frame: Frame, tolerance: f64) -> Request {
         let loop_rounds = self.device.info().loop_rounds().unwrap_or(usize::MAX);

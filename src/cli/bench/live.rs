@@ -1,0 +1,108 @@
+//! Frames of the window: a slider and a light that are dragged, and a window that rests.
+
+use std::path::Path;
+use std::rc::Rc;
+
+use glam::DVec2;
+
+use super::report::{Report, Table, Target};
+use crate::Result;
+use crate::gpu::Device;
+use crate::look::{Look, LookLens, LookLights};
+use crate::measure::Samples;
+use crate::photo::Photo;
+use crate::scene::{LensGhost, Light};
+use crate::series::Bell;
+use crate::viewer::Document;
+use crate::viewer::replay::{Outcome, Place, Player, Step};
+
+/// Frames of a drag.
+const FRAMES: usize = 60;
+/// Ghosts of the light that is dragged.
+const GHOSTS: usize = 1000;
+/// Frames a second that half of a drag's frames must reach.
+const STRENGTH_BAR: f64 = 15.0;
+const LIGHT_BAR: f64 = 8.0;
+
+/// Drags and rests, with a photo and a screen of the same size.
+pub(super) fn window(device: &Rc<Device>, size: [u32; 2], report: &mut Report) -> Result<()> {
+    let mut table = Table::new("Frames of the window", "second").note(format!(
+        "{FRAMES} frames of each drag, the device's work included; \"most\" is the worst. Stages are the last frame's."
+    ));
+    let slider = |part| Place::Control("Strength".into(), part);
+    let strength = Step::Drag { from: slider(0.3), to: slider(0.9), frames: FRAMES };
+    let light = Step::Drag { from: Place::Light(0), to: Place::Picture([0.4, -0.3]), frames: FRAMES };
+    let arms = [
+        ("strength drag".to_owned(), Look::default(), strength, STRENGTH_BAR),
+        (format!("drag of a light with {GHOSTS} ghosts"), many_ghosts(), light, LIGHT_BAR),
+    ];
+    for (name, look, step, bar) in arms {
+        let mut player = open(device, size, look)?;
+        let outcome = player.step(&step)?;
+        rows(&mut table, &name, &outcome);
+        let median = outcome.frames_ms.iter().copied().collect::<Samples>().median();
+        report.bar(format!("{name}, frames a second"), Target::AtLeast(bar), 1e3 / median);
+        let rested = player.step(&Step::Rest)?;
+        let idle = player.step(&Step::Idle(FRAMES))?;
+        rows(&mut table, &format!("idle after the {name}"), &idle);
+        let work = |outcome: &Outcome| {
+            let counts = outcome.counts;
+            counts.uploads + counts.spectra + counts.composites + counts.views
+        };
+        let done = work(&idle) - work(&rested);
+        report.bar(format!("{name}, work of {FRAMES} idle frames"), Target::AtMost(0.0), done as f64);
+    }
+    report.table(table);
+    Ok(())
+}
+
+/// A player at rest with a synthetic photo.
+fn open(device: &Rc<Device>, size: [u32; 2], look: Look) -> Result<Player> {
+    let mut player = Player::new(device, look.clone(), size)?;
+    player.app().add(Document::new(Path::new("bench.exr"), photo(size), look));
+    player.step(&Step::Rest)?;
+    // The first change of a kind compiles its shaders.
+    player.step(&Step::Key { key: "B".into(), ctrl: false, shift: false })?;
+    player.step(&Step::Key { key: "B".into(), ctrl: false, shift: false })?;
+    player.step(&Step::Rest)?;
+    Ok(player)
+}
+
+/// A dark slope with a lamp.
+fn photo([width, height]: [u32; 2]) -> Photo {
+    let pixel = |i: u32, j: u32| {
+        let lit = i.abs_diff(width / 4) < height / 60 && j.abs_diff(height / 4) < height / 60;
+        let light = if lit { 300.0 } else { 0.02 + 0.2 * i as f32 / width as f32 };
+        [light, 0.9 * light, 0.7 * light, 1.0]
+    };
+    Photo::new(width, height, (0..height).flat_map(|j| (0..width).map(move |i| pixel(i, j))).collect())
+}
+
+/// One light through a lens with [`GHOSTS`] ghosts.
+fn many_ghosts() -> Look {
+    let ghost = |k: usize| {
+        let part = k as f64 / GHOSTS as f64;
+        LensGhost {
+            bell: Bell::Gaussian,
+            along: 3.0 * part - 1.5,
+            size: DVec2::splat(0.1 + 0.4 * (7.3 * part).fract()),
+            tint: [1.0, 0.5 + 0.5 * part, 1.0 - 0.5 * part],
+            share: 0.1 / GHOSTS as f64,
+        }
+    };
+    let light = Light { position: DVec2::new(-0.5, 0.4), flux: [3.0, 2.7, 2.1], size: 0.01, muted: false };
+    Look {
+        lens: LookLens::Own((0..GHOSTS).map(ghost).collect()),
+        lights: LookLights::Listed(vec![light]),
+        ..Look::default()
+    }
+}
+
+fn rows(table: &mut Table, name: &str, outcome: &Outcome) {
+    table.row(name, &outcome.frames_ms.iter().copied().collect(), None);
+    for (stage, ms) in
+        [("plan", outcome.times.plan), ("spectrum", outcome.times.spectrum), ("composite", outcome.times.composite)]
+    {
+        table.row(format!("  {stage}"), &[ms].into_iter().collect(), None);
+    }
+}
