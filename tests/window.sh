@@ -96,6 +96,12 @@ xdotool windowsize "$id" 1200 760
 changes "$before" "coming back"
 
 xdotool windowfocus "$id" key ctrl+q
+waited=0
+while kill -0 "$window" 2>/dev/null; do
+    waited=$((waited + 1))
+    [ "$waited" -lt 300 ] || fail "it does not close"
+    sleep 0.1
+done
 status=0
 wait "$window" || status=$?
 window=

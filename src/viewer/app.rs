@@ -198,7 +198,11 @@ impl App {
         let context = self.context.clone();
         self.stage.tick(input.time.unwrap_or_else(|| context.time()));
         let before = self.document().map(Document::known_look);
-        let mut output = context.run_ui(input, |ui| self.ui(ui, screen));
+        let mut close = false;
+        let mut output = context.run_ui(input, |ui| {
+            close |= ui.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::Q));
+            self.ui(ui, screen);
+        });
         self.settle(before);
         screen.clear(opaque(context.global_style().visuals.extreme_bg_color));
         let again = self.draw(screen).unwrap_or_else(|error| {
@@ -208,7 +212,6 @@ impl App {
         });
         let shapes = context.tessellate(output.shapes, output.pixels_per_point);
         self.painter.paint(screen, output.pixels_per_point, &shapes, &mut output.textures_delta);
-        let close = context.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::Q));
         let by_egui = output.viewport_output.values().map(|viewport| viewport.repaint_delay).min();
         Ok(Shown {
             repaint_after: by_egui.unwrap_or(Duration::MAX).min(again).min(self.next_look()),
