@@ -42,7 +42,9 @@ pub fn show(ui: &mut Ui, document: &mut Document, stage: &Stage) {
         _ => String::new(),
     };
     ui.label(format!("{} ghosts by {}{direct}{note}", plan.ghosts(), plan.evaluator));
-    ui.label(format!("degree {} × {}, {} terms", plan.degree[0], plan.degree[1], plan.terms));
+    if plan.terms > 0 {
+        ui.label(format!("degree {} × {}, {} terms", plan.degree[0], plan.degree[1], plan.terms));
+    }
     prediction(ui, plan);
     candidates(ui, plan);
 }

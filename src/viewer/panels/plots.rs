@@ -68,7 +68,7 @@ fn section(ui: &mut Ui, document: &mut Document, stage: &Stage) -> Option<()> {
     let points = stage.known().section()?;
     let scale = points.iter().flat_map(|point| point.exact).fold(0.0f64, |most, value| most.max(value.abs()));
     let chart = chart("section").x_axis_label(axis).y_axis_label("field");
-    chart.legend(Legend::default()).show(ui, |plot| {
+    chart.legend(Legend::default().position(egui_plot::Corner::LeftBottom)).show(ui, |plot| {
         for (colour, (name, tint)) in COLOURS.into_iter().enumerate() {
             plot.line(
                 Line::new(name, curve(points, |point| point.exact[colour])).color(tint.gamma_multiply(0.5)).width(4.0),
@@ -110,7 +110,7 @@ fn convergence(ui: &mut Ui, stage: &Stage) -> Option<()> {
     };
     let power = |mark: egui_plot::GridMark, _: &_| format!("1e{}", mark.value.round());
     let chart = chart("convergence").x_axis_label("degree").y_axis_label("error").y_axis_formatter(power);
-    chart.legend(Legend::default()).show(ui, |plot| {
+    chart.legend(Legend::default().position(egui_plot::Corner::LeftBottom)).show(ui, |plot| {
         plot.line(Line::new("truncation", points(|degree| degree.truncation)));
         plot.points(Points::new("all sources", points(|degree| degree.total)).radius(2.5));
         plot.hline(HLine::new("tolerance", decades(plan.tolerance)).style(LineStyle::dashed_loose()));
