@@ -35,6 +35,7 @@ fn every_pixel_is_looked_at_and_the_worst_is_named() {
         let sound = Certificate::measure_all(renderer, &ghosts, &chosen, frame, 1e-3, |_| ()).unwrap();
         assert!(sound.check().is_ok() && sound.measured <= sound.predicted, "{sound:?}");
         let sample = Certificate::measure(renderer, &ghosts, &chosen, frame, 1e-3).unwrap();
-        assert!(sample.measured <= sound.measured && sample.verify == Verify::Sample, "{sample:?} {sound:?}");
+        // A sample may miss the field's largest value, the unit of the error, by a little.
+        assert!(sample.measured <= 1.02 * sound.measured && sample.verify == Verify::Sample, "{sample:?} {sound:?}");
     });
 }
