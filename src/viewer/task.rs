@@ -11,6 +11,15 @@ pub struct Task<T> {
     receiver: Receiver<T>,
 }
 
+/// Wakes the window when it is dropped.
+struct WakeAfterwards(Wake);
+
+impl Drop for WakeAfterwards {
+    fn drop(&mut self) {
+        (self.0)();
+    }
+}
+
 /// What has become of a task.
 #[derive(Debug, PartialEq)]
 pub enum State<T> {
@@ -29,11 +38,13 @@ impl<T: Send + 'static> Task<T> {
     /// Where the system gives no thread.
     pub fn start(name: &str, wake: &Wake, work: impl FnOnce() -> T + Send + 'static) -> io::Result<Self> {
         let (sender, receiver) = channel();
-        let wake = wake.clone();
+        let wake = WakeAfterwards(wake.clone());
         thread::Builder::new().name(name.to_owned()).spawn(move || {
+            let _wake = wake;
+            // Moved in after it, and so gone before the window is woken, even where the work panics.
+            let sender = sender;
             // The other end is gone where nobody wants the result any more.
             let _ = sender.send(work());
-            wake();
         })?;
         Ok(Self { receiver })
     }
@@ -62,6 +73,15 @@ mod tests {
         let task = Task::start("test", &wake, || 7).unwrap();
         receiver.recv().unwrap();
         assert_eq!(task.poll(), State::Done(7));
+        assert_eq!(task.poll(), State::Failed);
+    }
+
+    #[test]
+    fn a_task_that_panics_wakes_the_window_too() {
+        let (sender, receiver) = channel();
+        let wake: Wake = Arc::new(move || sender.send(()).unwrap());
+        let task = Task::<()>::start("test", &wake, || panic!("as it should")).unwrap();
+        receiver.recv().unwrap();
         assert_eq!(task.poll(), State::Failed);
     }
 }
