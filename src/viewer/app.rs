@@ -323,11 +323,13 @@ impl App {
     fn ui(&mut self, ui: &mut Ui, screen: &Screen) {
         let dropped = ui.input(|input| input.raw.dropped_files.clone());
         dropped.iter().for_each(|file| self.open(file.path().to_owned()));
+        let asked = self.asks();
         self.bar(ui);
         self.tabs(ui);
         self.strips(ui);
         self.exports(ui);
-        let asks = self.asks();
+        // What was typed into an answer is no shortcut, even where it was all typed in one frame.
+        let asks = asked || self.asks();
         let Some((_, document)) = self.documents.get_mut(self.current) else {
             self.canvas = Canvas::default();
             self.start(ui);

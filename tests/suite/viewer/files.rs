@@ -63,6 +63,25 @@ fn the_picture_is_saved_under_the_name_that_is_typed() {
 }
 
 #[test]
+fn what_is_typed_into_an_answer_is_no_shortcut() {
+    let (folder, mut session) = in_a_folder();
+    session.app.document_mut().unwrap().selected = Some(0);
+    let (tone_map, look) = (session.document().viewing.tone_map, session.document().look.clone());
+    session.key(CTRL | Modifiers::SHIFT, Key::S);
+    // A slow frame has the whole path in it: M would mute the light, T choose another tone map.
+    let typed = ["m", "t", "l"].map(|text| Event::Text(text.into()));
+    let keys = [Key::M, Key::T, Key::L, Key::Enter].map(|key| (key, true));
+    let key =
+        |(key, pressed)| Event::Key { key, physical_key: None, pressed, repeat: false, modifiers: Modifiers::NONE };
+    session.frame(typed.into_iter().chain(keys.map(key)).collect());
+    session.frame([Key::M, Key::T, Key::L, Key::Enter].map(|which| key((which, false))).into());
+    session.settle();
+    assert_eq!((session.document().viewing.tone_map, session.document().viewing.handles), (tone_map, true));
+    assert_eq!(session.document().look, look);
+    assert!(folder.path().join("lamp.tomlmtl").exists());
+}
+
+#[test]
 fn a_picture_that_cannot_be_written_is_told_of_and_leaves_nothing() {
     let (folder, mut session) = in_a_folder();
     session.app.export(Subject::Glare, &folder.path().join("none/glare.exr"));
