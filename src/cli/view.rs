@@ -36,6 +36,10 @@ pub struct Args {
     #[arg(long, value_name = "FOLDER", hide = true, requires = "script")]
     script_output: Option<PathBuf>,
 
+    /// Keep what the window shows in a JSON file, for a test that drives it; see src/viewer/status.rs
+    #[arg(long, value_name = "FILE", hide = true, conflicts_with = "script")]
+    status: Option<PathBuf>,
+
     /// Where its OpenGL comes from
     #[arg(long, value_enum, hide = true, default_value_t = BackendChoice::Auto, requires = "script")]
     backend: BackendChoice,
@@ -54,5 +58,5 @@ pub fn run(args: &Args) -> Result<()> {
         let device = Device::open(args.backend.backends())?;
         return replay::play(&device, &args.photos, look, script, output);
     }
-    viewer::run(&args.photos, look)
+    viewer::run(&args.photos, look, args.status.clone())
 }

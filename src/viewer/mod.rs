@@ -9,6 +9,7 @@
 //! | `viewing` | what a person sets of the view, and where pixels lie on the screen for it |
 //! | `stage` | the picture on the device; computes what has changed, and nothing else |
 //! | `ask`, `export` | questions for paths, and pictures written in the background |
+//! | `input` | the pointer's buttons, a frame each |
 //! | `loader` | files, read in the background |
 //! | `timings` | how long the last frames took |
 //! | `study` | what is found out about a picture at rest, in the background |
@@ -17,6 +18,7 @@
 //! | `panels` | the controls, one file a panel |
 //! | `control` | what every control has: a name, a unit, a range, a way back |
 //! | `replay` | scripts of what a person does, played without a window |
+//! | `status` | what is shown, for whoever drives the window from outside |
 //! | `shortcuts` | the keyboard |
 //!
 //! A frame runs egui, which changes the document; then the stage is brought up to date with the document, shown on the
@@ -28,12 +30,14 @@ mod canvas;
 mod control;
 mod document;
 mod export;
+mod input;
 mod loader;
 pub mod model;
 mod panels;
 pub mod replay;
 mod shortcuts;
 mod stage;
+mod status;
 mod study;
 mod task;
 mod timings;
@@ -45,6 +49,7 @@ pub use document::{Document, LIVE_PIXELS};
 pub use export::Subject;
 pub use loader::Wake;
 pub use stage::{Counts, Times};
+pub use status::Status;
 pub use study::{Cut, CutPoint, Degree, Plot, Study, Wanted};
 pub use viewing::{Placement, Shows, Viewing, Zoom};
 pub use window::run;

@@ -15,7 +15,8 @@ use glam::DVec2;
 use serde::{Deserialize, Serialize};
 
 use super::app::App;
-use super::stage::{Counts, Times};
+use super::stage::Times;
+use super::status::Status;
 use crate::gpu::{Device, Screen};
 use crate::look::Look;
 use crate::{Error, Result, target};
@@ -85,18 +86,11 @@ pub enum Step {
 pub struct Outcome {
     /// Milliseconds that each of its frames took, with what the device did for it.
     pub frames_ms: Vec<f64>,
-    /// How often each kind of work has been done by its end.
-    pub counts: Counts,
     /// How long each kind of work last took.
     pub times: Times,
-    /// The name of the photo that is shown.
-    pub photo: Option<String>,
-    /// Where its lights are.
-    pub lights: Vec<[f64; 2]>,
-    /// The strength of its glare.
-    pub strength: Option<f64>,
-    /// What went wrong and was not dismissed.
-    pub notices: Vec<String>,
+    /// What is shown by its end.
+    #[serde(flatten)]
+    pub status: Status,
 }
 
 /// Does what scripts say, on a screen that nobody sees.
@@ -244,17 +238,8 @@ impl Player {
     }
 
     fn outcome(&self) -> Outcome {
-        let document = self.app.document();
-        let lights = document.map(|document| document.lights()).unwrap_or_default();
-        Outcome {
-            frames_ms: self.frames_ms.clone(),
-            counts: self.app.counts(),
-            times: self.app.times(),
-            photo: document.map(super::Document::name),
-            lights: lights.iter().map(|light| light.position.to_array()).collect(),
-            strength: document.map(|document| document.look.strength),
-            notices: self.app.notices().to_vec(),
-        }
+        let (frames_ms, times) = (self.frames_ms.clone(), self.app.times());
+        Outcome { frames_ms, times, status: Status::of(&self.app) }
     }
 
     fn load(&mut self) -> Result<()> {

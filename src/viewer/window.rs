@@ -11,24 +11,30 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoopProxy};
 use winit::window::{Window, WindowId};
 
 use super::app::App;
+use super::input;
 use super::model::{Look, State};
+use super::status::Status;
 use crate::gpu::{Display, Screen, Surface, event_loop};
-use crate::{Error, Result};
+use crate::{Error, Result, target};
+
+/// A frame that is due sooner than this goes on with something.
+const MOVING: Duration = Duration::from_millis(100);
 
 /// Another thread asks for a frame.
 #[derive(Debug, Clone, Copy)]
 struct Wanted;
 
-/// Opens a window on photos, each with `look` at first, and stays until it is closed.
+/// Opens a window on photos, each with `look` at first, and stays until it is closed. What it shows while it rests is
+/// kept in the file `status`, if one is named.
 ///
 /// # Errors
 /// [`Error::NoDisplay`] and [`Error::NoContext`] before there is any window; [`Error::Gl`] where the driver fails
-/// later. A photo that cannot be read is told of in the window.
-pub fn run(photos: &[PathBuf], look: Look) -> Result<()> {
+/// later, [`Error::Write`] where `status` cannot be written. A photo that cannot be read is told of in the window.
+pub fn run(photos: &[PathBuf], look: Look, status: Option<PathBuf>) -> Result<()> {
     let event_loop = event_loop::<Wanted>()?;
     let display = Display::open(&event_loop)?;
     let mut viewer = Viewer {
-        waiting: Some(Start { display, photos: photos.to_vec(), look, proxy: event_loop.create_proxy() }),
+        waiting: Some(Start { display, photos: photos.to_vec(), look, status, proxy: event_loop.create_proxy() }),
         open: None,
         failed: None,
     };
@@ -41,6 +47,7 @@ struct Start {
     display: Display,
     photos: Vec<PathBuf>,
     look: Look,
+    status: Option<PathBuf>,
     proxy: EventLoopProxy<Wanted>,
 }
 
@@ -56,12 +63,16 @@ struct Open {
     app: App,
     screen: Screen,
     input: egui_winit::State,
+    /// What happened and waits for the next frame.
+    waiting: Vec<egui::Event>,
     state: Option<State>,
     hidden: bool,
     vsync: bool,
     /// Whether nothing of it is seen, minimised or behind others.
     occluded: bool,
     title: String,
+    /// Where to keep what is shown, and what is kept there.
+    status: Option<(PathBuf, Option<Status>)>,
     surface: Surface,
 }
 
@@ -109,11 +120,13 @@ impl Start {
             app,
             screen,
             input,
+            waiting: Vec::new(),
             state,
             hidden: true,
             vsync: true,
             occluded: false,
             title: String::new(),
+            status: self.status.map(|path| (path, None)),
             surface,
         })
     }
@@ -125,6 +138,17 @@ impl Open {
         let window = self.surface.window();
         let size: LogicalSize<u32> = window.inner_size().to_logical(window.scale_factor());
         let _ = self.state.as_ref().map(|state| state.keep_size([size.width, size.height]));
+    }
+
+    /// Keeps what is shown, once nothing moves and where it has changed.
+    fn keep_status(&mut self, rest: Duration) -> Result<()> {
+        let Some((path, kept)) = self.status.as_mut().filter(|_| rest > MOVING) else { return Ok(()) };
+        let now = Some(Status::of(&self.app));
+        if now != *kept {
+            target::write_json(path, &now, true)?;
+            *kept = now;
+        }
+        Ok(())
     }
 
     /// Draws a frame; says what comes next.
@@ -139,7 +163,9 @@ impl Open {
             self.surface.resize(size);
             self.screen.set_size(size);
         }
-        let input = self.input.take_egui_input(window);
+        let mut input = self.input.take_egui_input(window);
+        input.events.splice(..0, self.waiting.drain(..));
+        self.waiting = input::split(&mut input.events);
         let shown = self.app.frame(input, &self.screen)?;
         if shown.vsync != self.vsync {
             // A driver may not obey; then it stays as it was.
@@ -156,7 +182,9 @@ impl Open {
         if std::mem::take(&mut self.hidden) {
             window.set_visible(true);
         }
-        let due = Instant::now().checked_add(shown.repaint_after);
+        let wait = if self.waiting.is_empty() { shown.repaint_after } else { Duration::ZERO };
+        self.keep_status(wait)?;
+        let due = Instant::now().checked_add(wait);
         Ok(if shown.close { Next::Close } else { due.map_or(Next::Event, Next::Frame) })
     }
 }

@@ -46,7 +46,7 @@ pub(super) fn window(device: &Rc<Device>, size: [u32; 2], report: &mut Report) -
         let idle = player.step(&Step::Idle(FRAMES))?;
         rows(&mut table, &format!("idle after the {name}"), &idle);
         let work = |outcome: &Outcome| {
-            let counts = outcome.counts;
+            let counts = outcome.status.counts;
             counts.uploads + counts.spectra + counts.composites + counts.views
         };
         let done = work(&idle) - work(&rested);

@@ -161,7 +161,7 @@ impl App {
     }
 
     /// Whether a question stands over everything else.
-    pub(super) fn asks(&self) -> bool {
+    pub fn asks(&self) -> bool {
         self.files.ask.is_some()
     }
 

@@ -5,6 +5,7 @@ use glam::DVec2;
 
 use crate::choices::Evaluator;
 use crate::plan::HIGHEST_DEGREE;
+use crate::viewer::control::place;
 use crate::viewer::document::Document;
 use crate::viewer::stage::Stage;
 
@@ -19,11 +20,12 @@ fn name(evaluator: Option<Evaluator>) -> String {
 
 /// Shows the controls, folded away at first.
 pub fn show(ui: &mut Ui, document: &mut Document, stage: &Stage) {
-    ui.collapsing("By hand", |ui| {
+    let shown = ui.collapsing("By hand", |ui| {
         evaluator(ui, document);
         degree(ui, document, stage);
         period(ui, document, stage);
     });
+    ui.data_mut(|data| data.insert_temp(place("By hand"), shown.header_response.rect));
 }
 
 fn evaluator(ui: &mut Ui, document: &mut Document) {
@@ -33,9 +35,11 @@ fn evaluator(ui: &mut Ui, document: &mut Document) {
         let combo = ComboBox::from_id_salt("evaluator").selected_text(name(*evaluator)).show_ui(ui, |ui| {
             ui.selectable_value(evaluator, None, name(None));
             for choice in Evaluator::ALL {
-                ui.selectable_value(evaluator, Some(choice), name(Some(choice)));
+                let label = ui.selectable_value(evaluator, Some(choice), name(Some(choice)));
+                ui.data_mut(|data| data.insert_temp(place(&format!("Evaluator {choice}")), label.rect));
             }
         });
+        ui.data_mut(|data| data.insert_temp(place("Evaluator"), combo.response.rect));
         combo.response.on_hover_text("Non-parametric sums the bells at every pixel, parametric sums their series");
     });
 }
