@@ -61,14 +61,12 @@ pub fn apply(context: &Context, document: &mut Document, placement: Option<&Plac
         viewing.loupe = !viewing.loupe;
     }
     light(context, document, &pressed);
-    let with = |modifiers, key| context.input_mut(|input| input.consume_key(modifiers, key));
-    if with(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z) || with(Modifiers::COMMAND, Key::Y) {
-        document.redo();
-    }
-    if with(Modifiers::COMMAND, Key::Z) {
-        document.undo();
-    }
-    let command = |key| with(Modifiers::COMMAND, key);
+    // A slow frame may have several presses; each is a step.
+    let count = |modifiers, key| context.input_mut(|input| input.count_and_consume_key(modifiers, key));
+    let redone = count(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z) + count(Modifiers::COMMAND, Key::Y);
+    (0..redone).for_each(|_| document.redo());
+    (0..count(Modifiers::COMMAND, Key::Z)).for_each(|_| document.undo());
+    let command = |key| context.input_mut(|input| input.consume_key(Modifiers::COMMAND, key));
     if command(Key::Tab) {
         return Some(Command::Next);
     }

@@ -63,6 +63,18 @@ fn the_picture_is_saved_under_the_name_that_is_typed() {
 }
 
 #[test]
+fn two_presses_in_one_frame_undo_two_steps() {
+    let (_folder, mut session) = in_a_folder();
+    for strength in [2.0, 3.0] {
+        session.app.document_mut().unwrap().look.strength = strength;
+        session.settle();
+    }
+    let key = |pressed| Event::Key { key: Key::Z, physical_key: None, pressed, repeat: false, modifiers: CTRL };
+    session.frame(vec![key(true), key(false), key(true), key(false)]);
+    assert_eq!((&session.document().look, session.document().steps()), (&Look::default(), [false, true]));
+}
+
+#[test]
 fn what_is_typed_into_an_answer_is_no_shortcut() {
     let (folder, mut session) = in_a_folder();
     session.app.document_mut().unwrap().selected = Some(0);
