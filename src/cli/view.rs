@@ -7,7 +7,7 @@ use crate::gpu::Device;
 use crate::look::{Look, LookLens};
 use crate::scene::presets::DEFAULT_PRESET;
 use crate::scene::read_scene;
-use crate::viewer::replay;
+use crate::viewer::{Harness, replay};
 use crate::{Result, viewer};
 
 /// Open photos in a window, where the glare can be set by hand and seen at once
@@ -40,6 +40,10 @@ pub struct Args {
     #[arg(long, value_name = "FILE", hide = true, conflicts_with = "script")]
     status: Option<PathBuf>,
 
+    /// Take the window's context for lost after so many frames, to test that it goes on
+    #[arg(long, value_name = "FRAMES", hide = true, conflicts_with = "script")]
+    lose_after: Option<u64>,
+
     /// Where its OpenGL comes from
     #[arg(long, value_enum, hide = true, default_value_t = BackendChoice::Auto, requires = "script")]
     backend: BackendChoice,
@@ -58,5 +62,6 @@ pub fn run(args: &Args) -> Result<()> {
         let device = Device::open(args.backend.backends())?;
         return replay::play(&device, &args.photos, look, script, output);
     }
-    viewer::run(&args.photos, look, args.status.clone())
+    let harness = Harness { status: args.status.clone(), lose_after: args.lose_after };
+    viewer::run(&args.photos, look, harness)
 }

@@ -82,7 +82,9 @@ impl LinesPass {
 
 impl Drop for LinesPass {
     fn drop(&mut self) {
-        unsafe { self.device.gl().delete_vertex_array(self.array) }
+        if let Some(gl) = self.device.to_free() {
+            unsafe { gl.delete_vertex_array(self.array) }
+        }
     }
 }
 

@@ -28,6 +28,11 @@ impl Painter {
         Ok(Self { device: device.clone(), painter })
     }
 
+    /// What it paints on.
+    pub fn device(&self) -> &Device {
+        &self.device
+    }
+
     /// Lays shapes over what is on the screen.
     pub fn paint(
         &mut self,
@@ -53,6 +58,17 @@ impl Painter {
         }
     }
 
+    /// Takes egui's fonts as they are, for a painter that has not seen them made.
+    pub fn set_fonts(&mut self, image: egui::ColorImage) {
+        unsafe {
+            self.device.gl().bind_buffer(glow::PIXEL_UNPACK_BUFFER, None);
+            self.device.gl().active_texture(glow::TEXTURE0);
+        }
+        let options = egui::epaint::TextureAtlas::texture_options();
+        let image = egui::epaint::ImageDelta::full(image, options);
+        self.painter.set_texture(egui::TextureId::default(), &image);
+    }
+
     /// The largest side of a texture that the painter can take.
     pub fn max_texture_side(&self) -> usize {
         self.painter.max_texture_side()
@@ -61,6 +77,8 @@ impl Painter {
 
 impl Drop for Painter {
     fn drop(&mut self) {
-        self.painter.destroy();
+        if self.device.to_free().is_some() {
+            self.painter.destroy();
+        }
     }
 }

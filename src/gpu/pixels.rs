@@ -134,8 +134,8 @@ impl PixelBuffer {
     }
 
     fn forget(&mut self) {
-        if let Some(fence) = self.fence.take() {
-            unsafe { self.device.gl().delete_sync(fence) }
+        if let (Some(fence), Some(gl)) = (self.fence.take(), self.device.to_free()) {
+            unsafe { gl.delete_sync(fence) }
         }
     }
 }
@@ -149,6 +149,8 @@ fn bytes(width: u32, height: u32) -> Result<i32> {
 impl Drop for PixelBuffer {
     fn drop(&mut self) {
         self.forget();
-        unsafe { self.device.gl().delete_buffer(self.raw) }
+        if let Some(gl) = self.device.to_free() {
+            unsafe { gl.delete_buffer(self.raw) }
+        }
     }
 }

@@ -101,7 +101,9 @@ impl<T: Pod> Buffer<T> {
 
 impl<T> Drop for Buffer<T> {
     fn drop(&mut self) {
-        unsafe { self.device.gl().delete_buffer(self.raw) }
+        if let Some(gl) = self.device.to_free() {
+            unsafe { gl.delete_buffer(self.raw) }
+        }
     }
 }
 
@@ -339,7 +341,7 @@ impl Texture {
 
 impl Drop for Texture {
     fn drop(&mut self) {
-        let gl = self.device.gl();
+        let Some(gl) = self.device.to_free() else { return };
         unsafe {
             for &framebuffer in &self.framebuffers {
                 gl.delete_framebuffer(framebuffer);
@@ -394,6 +396,8 @@ impl Triangle {
 
 impl Drop for Triangle {
     fn drop(&mut self) {
-        unsafe { self.device.gl().delete_vertex_array(self.raw) }
+        if let Some(gl) = self.device.to_free() {
+            unsafe { gl.delete_vertex_array(self.raw) }
+        }
     }
 }

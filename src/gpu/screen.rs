@@ -145,8 +145,7 @@ impl Screen {
 
 impl Drop for Screen {
     fn drop(&mut self) {
-        let gl = self.device.gl();
-        if let Some((framebuffer, texture)) = self.own {
+        if let (Some((framebuffer, texture)), Some(gl)) = (self.own, self.device.to_free()) {
             unsafe {
                 gl.delete_framebuffer(framebuffer);
                 gl.delete_texture(texture);

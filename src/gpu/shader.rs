@@ -146,7 +146,9 @@ impl Program {
 
 impl Drop for Program {
     fn drop(&mut self) {
-        unsafe { self.device.gl().delete_program(self.raw) }
+        if let Some(gl) = self.device.to_free() {
+            unsafe { gl.delete_program(self.raw) }
+        }
     }
 }
 

@@ -66,6 +66,8 @@ impl Timer {
 
 impl Drop for Timer {
     fn drop(&mut self) {
-        unsafe { self.device.gl().delete_query(self.query) }
+        if let Some(gl) = self.device.to_free() {
+            unsafe { gl.delete_query(self.query) }
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! The whole window but the window: what is open, and one frame of it on a screen.
 
+mod device;
 mod files;
 
 use std::path::PathBuf;
@@ -50,6 +51,7 @@ pub struct App {
     /// When the field's look last changed, and what a full picture of it last cost, in milliseconds.
     moved: f64,
     cost: f64,
+    devices: u32,
 }
 
 /// A search for lights: of which document, by which rules.
@@ -103,6 +105,7 @@ impl App {
             probe: None,
             moved: f64::NEG_INFINITY,
             cost: 0.0,
+            devices: 1,
         })
     }
 
@@ -158,6 +161,11 @@ impl App {
         self.stage.times()
     }
 
+    /// On how many devices it has been drawn, one after the other.
+    pub fn devices(&self) -> u32 {
+        self.devices
+    }
+
     /// The plan of the picture.
     pub fn plan(&self) -> Option<&Plan> {
         self.stage.plan()
@@ -192,7 +200,7 @@ impl App {
     /// Runs one frame: takes the input, brings the picture up to date, and draws all of the screen.
     ///
     /// # Errors
-    /// [`crate::Error::Gl`] where the driver fails at the screen itself. What fails at a picture becomes a notice.
+    /// [`crate::Error::Gl`] where the driver fails at the screen itself, or the device is lost. What fails at a picture becomes a notice.
     pub fn frame(&mut self, input: RawInput, screen: &Screen) -> Result<Shown> {
         self.take_in();
         let context = self.context.clone();
@@ -205,11 +213,15 @@ impl App {
         });
         self.settle(before);
         screen.clear(opaque(context.global_style().visuals.extreme_bg_color));
-        let again = self.draw(screen).unwrap_or_else(|error| {
-            let told = self.notices.len();
-            self.notice(error.to_string());
-            if self.notices.len() > told { Duration::ZERO } else { Duration::MAX }
-        });
+        let again = match self.draw(screen) {
+            // What fails on a device that is lost is no news of the picture.
+            Err(error) if self.painter.device().is_lost() => return Err(error),
+            drawn => drawn.unwrap_or_else(|error| {
+                let told = self.notices.len();
+                self.notice(error.to_string());
+                if self.notices.len() > told { Duration::ZERO } else { Duration::MAX }
+            }),
+        };
         let shapes = context.tessellate(output.shapes, output.pixels_per_point);
         self.painter.paint(screen, output.pixels_per_point, &shapes, &mut output.textures_delta);
         let by_egui = output.viewport_output.values().map(|viewport| viewport.repaint_delay).min();
@@ -267,9 +279,7 @@ impl App {
                 Err(error) => self.notice(format!("the photo cannot be searched: {error}")),
             }
         }
-        if !gesture {
-            self.remember_look();
-        }
+        self.remember_look(gesture);
     }
 
     fn notice(&mut self, text: String) {

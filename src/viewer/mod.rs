@@ -52,4 +52,4 @@ pub use stage::{Counts, Times};
 pub use status::Status;
 pub use study::{Cut, CutPoint, Degree, Plot, Study, Wanted};
 pub use viewing::{Placement, Shows, Viewing, Zoom};
-pub use window::run;
+pub use window::{Harness, run};

@@ -75,6 +75,8 @@ pub enum Step {
     },
     /// Gives the screen another size, in pixels.
     Resize([u32; 2]),
+    /// Loses the device, as where a graphics card is reset, and goes on with another of the kind.
+    Lose,
     /// Sets the pixels in a point.
     Scale(f32),
     /// Writes what is on the screen to a PNG file of that name.
@@ -228,6 +230,7 @@ impl Player {
                 self.screen = Screen::hidden(&self.device, *size)?;
                 self.frame(Vec::new())?;
             }
+            Step::Lose => self.lose()?,
             Step::Scale(scale) => {
                 self.scale = scale.clamp(0.25, 8.0);
                 self.frame(Vec::new())?;
@@ -240,6 +243,14 @@ impl Player {
     fn outcome(&self) -> Outcome {
         let (frames_ms, times) = (self.frames_ms.clone(), self.app.times());
         Outcome { frames_ms, times, status: Status::of(&self.app) }
+    }
+
+    fn lose(&mut self) -> Result<()> {
+        self.device.abandon();
+        self.device = Device::open(&[self.device.info().backend])?;
+        self.app.rebuild(&self.device)?;
+        self.screen = Screen::hidden(&self.device, self.screen.size())?;
+        self.frame(Vec::new())
     }
 
     fn load(&mut self) -> Result<()> {

@@ -44,7 +44,9 @@ pub struct Status {
     pub asks: bool,
     /// What went wrong and was not dismissed.
     pub notices: Vec<String>,
-    /// How often each kind of work has been done.
+    /// On how many devices it has been drawn, one after the other.
+    pub devices: u32,
+    /// How often each kind of work has been done, on the last of them.
     pub counts: Counts,
     /// Where the lights are on the screen, in pixels from its top left.
     pub lights_at: Vec<[f32; 2]>,
@@ -74,6 +76,7 @@ impl Status {
             busy: app.is_reading() || app.is_writing(),
             asks: app.asks(),
             notices: app.notices().to_vec(),
+            devices: app.devices(),
             counts: app.counts(),
             lights_at: lights.iter().filter_map(|light| at(light.position)).map(pixels).collect(),
             controls: NAMES.into_iter().filter_map(control).collect(),

@@ -1,6 +1,7 @@
 //! The window itself: winit's events in, frames out. It sleeps while nothing happens.
 
 use std::path::PathBuf;
+use std::rc::Rc;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -14,7 +15,7 @@ use super::app::App;
 use super::input;
 use super::model::{Look, State};
 use super::status::Status;
-use crate::gpu::{Display, Screen, Surface, event_loop};
+use crate::gpu::{Device, Display, Screen, Surface, event_loop};
 use crate::{Error, Result, target};
 
 /// A frame that is due sooner than this goes on with something.
@@ -24,17 +25,27 @@ const MOVING: Duration = Duration::from_millis(100);
 #[derive(Debug, Clone, Copy)]
 struct Wanted;
 
-/// Opens a window on photos, each with `look` at first, and stays until it is closed. What it shows while it rests is
-/// kept in the file `status`, if one is named.
+/// What a test asks of the window.
+#[derive(Debug, Clone, Default)]
+pub struct Harness {
+    /// A file in which it keeps what it shows whenever it rests.
+    pub status: Option<PathBuf>,
+    /// After how many frames its context is taken for lost, once.
+    pub lose_after: Option<u64>,
+}
+
+/// Opens a window on photos, each with `look` at first, and stays until it is closed. Where its context is lost, it goes
+/// on with another.
 ///
 /// # Errors
-/// [`Error::NoDisplay`] and [`Error::NoContext`] before there is any window; [`Error::Gl`] where the driver fails
-/// later, [`Error::Write`] where `status` cannot be written. A photo that cannot be read is told of in the window.
-pub fn run(photos: &[PathBuf], look: Look, status: Option<PathBuf>) -> Result<()> {
+/// [`Error::NoDisplay`] and [`Error::NoContext`] before there is any window; [`Error::Gl`] where the driver fails later
+/// for good, [`Error::Write`] where the harness's file cannot be written. A photo that cannot be read is told of in the
+/// window.
+pub fn run(photos: &[PathBuf], look: Look, harness: Harness) -> Result<()> {
     let event_loop = event_loop::<Wanted>()?;
     let display = Display::open(&event_loop)?;
     let mut viewer = Viewer {
-        waiting: Some(Start { display, photos: photos.to_vec(), look, status, proxy: event_loop.create_proxy() }),
+        waiting: Some(Start { display, photos: photos.to_vec(), look, harness, proxy: event_loop.create_proxy() }),
         open: None,
         failed: None,
     };
@@ -47,7 +58,7 @@ struct Start {
     display: Display,
     photos: Vec<PathBuf>,
     look: Look,
-    status: Option<PathBuf>,
+    harness: Harness,
     proxy: EventLoopProxy<Wanted>,
 }
 
@@ -71,8 +82,12 @@ struct Open {
     /// Whether nothing of it is seen, minimised or behind others.
     occluded: bool,
     title: String,
-    /// Where to keep what is shown, and what is kept there.
-    status: Option<(PathBuf, Option<Status>)>,
+    harness: Harness,
+    /// What the harness was last told.
+    told: Option<Status>,
+    /// Whether no frame has been shown since its context was made anew.
+    untried: bool,
+    device: Rc<Device>,
     surface: Surface,
 }
 
@@ -126,15 +141,19 @@ impl Start {
             vsync: true,
             occluded: false,
             title: String::new(),
-            status: self.status.map(|path| (path, None)),
+            harness: self.harness,
+            told: None,
+            untried: false,
+            device,
             surface,
         })
     }
 }
 
 impl Open {
-    /// Remembers the window's size; at the end there is nobody to be told that it cannot be.
-    fn keep_size(&self) {
+    /// Remembers look and size; at the end there is nobody to be told that they cannot be.
+    fn keep(&mut self) {
+        self.app.keep_look();
         let window = self.surface.window();
         let size: LogicalSize<u32> = window.inner_size().to_logical(window.scale_factor());
         let _ = self.state.as_ref().map(|state| state.keep_size([size.width, size.height]));
@@ -142,13 +161,39 @@ impl Open {
 
     /// Keeps what is shown, once nothing moves and where it has changed.
     fn keep_status(&mut self, rest: Duration) -> Result<()> {
-        let Some((path, kept)) = self.status.as_mut().filter(|_| rest > MOVING) else { return Ok(()) };
+        let Some(path) = self.harness.status.as_ref().filter(|_| rest > MOVING) else { return Ok(()) };
         let now = Some(Status::of(&self.app));
-        if now != *kept {
+        if now != self.told {
             target::write_json(path, &now, true)?;
-            *kept = now;
+            self.told = now;
         }
         Ok(())
+    }
+
+    /// Fails once a frame was the last of its context.
+    fn count(&mut self) -> Result<()> {
+        let frames = self.harness.lose_after;
+        self.harness.lose_after = frames.and_then(|frames| frames.checked_sub(1));
+        if self.device.is_lost() || frames == Some(0) {
+            return Err(Error::Gl("the window's context was lost".into()));
+        }
+        Ok(())
+    }
+
+    /// Goes on with another context, where `lost` says why there has to be one.
+    fn rebuild(mut self, lost: &Error) -> Result<Self> {
+        let kept = self.app.keep_look().map(|path| format!("; the look is kept in {}", path.display()));
+        let ended = |why: &Error| Error::Gl(format!("{lost} ({why}){}", kept.as_deref().unwrap_or_default()));
+        if self.untried {
+            return Err(ended(&Error::Gl("right after it was made anew".into())));
+        }
+        let Self { mut app, device, surface, .. } = self;
+        device.abandon();
+        let (device, surface) = surface.rebuild().map_err(|error| ended(&error))?;
+        app.rebuild(&device).map_err(|error| ended(&error))?;
+        surface.set_vsync(self.vsync);
+        let screen = Screen::of_window(&device, self.screen.size());
+        Ok(Self { app, device, surface, screen, untried: true, ..self })
     }
 
     /// Draws a frame; says what comes next.
@@ -167,12 +212,15 @@ impl Open {
         input.events.splice(..0, self.waiting.drain(..));
         self.waiting = input::split(&mut input.events);
         let shown = self.app.frame(input, &self.screen)?;
+        self.count()?;
+        let window = self.surface.window();
         if shown.vsync != self.vsync {
             // A driver may not obey; then it stays as it was.
             self.surface.set_vsync(shown.vsync);
             self.vsync = shown.vsync;
         }
         self.surface.swap()?;
+        self.untried = false;
         self.input.handle_platform_output(window, shown.platform);
         let title = self.app.title();
         if title != self.title {
@@ -198,13 +246,29 @@ impl Viewer {
     fn redraw(&mut self, event_loop: &ActiveEventLoop) {
         let Some(open) = &mut self.open else { return };
         match open.frame() {
-            Ok(Next::Close) => event_loop.exit(),
+            Ok(Next::Close) => {
+                open.keep();
+                event_loop.exit();
+            }
             Ok(Next::Event) => event_loop.set_control_flow(ControlFlow::Wait),
             Ok(Next::Frame(due)) if due.saturating_duration_since(Instant::now()) < Duration::from_millis(1) => {
                 open.surface.window().request_redraw();
             }
             Ok(Next::Frame(due)) => event_loop.set_control_flow(ControlFlow::WaitUntil(due)),
+            Err(error @ Error::Gl(_)) => self.recover(event_loop, &error),
             Err(error) => self.fail(event_loop, error),
+        }
+    }
+
+    /// Goes on after the driver failed, or ends.
+    fn recover(&mut self, event_loop: &ActiveEventLoop, error: &Error) {
+        match self.open.take().map(|open| open.rebuild(error)) {
+            Some(Ok(open)) => {
+                open.surface.window().request_redraw();
+                self.open = Some(open);
+            }
+            Some(Err(error)) => self.fail(event_loop, error),
+            None => {}
         }
     }
 }
@@ -240,7 +304,7 @@ impl ApplicationHandler<Wanted> for Viewer {
         let Some(open) = &mut self.open else { return };
         match event {
             WindowEvent::CloseRequested => {
-                open.keep_size();
+                open.keep();
                 event_loop.exit();
             }
             WindowEvent::RedrawRequested => self.redraw(event_loop),

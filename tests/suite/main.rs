@@ -32,5 +32,6 @@ mod tiles;
 mod view;
 mod viewer;
 mod viewer_fuzz;
+mod viewer_lost;
 mod viewer_panels;
 mod window;

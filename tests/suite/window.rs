@@ -18,11 +18,11 @@ fn lamp() -> Photo {
 }
 
 /// A desk with the window open on the lamp.
-fn opened() -> Desk {
+fn opened(options: &[&str]) -> Desk {
     let mut desk = Desk::new();
     let photo = desk.path("lamp.exr");
     photo::write(&photo, &lamp(), &WriteOptions::default()).unwrap();
-    desk.open(&photo);
+    desk.open(&photo, options);
     desk.to_window(&["windowsize"], &["1260", "1080"]);
     desk.rested();
     desk
@@ -45,7 +45,7 @@ fn shows_the_lamp(desk: &Desk) -> bool {
 
 #[test]
 fn a_look_is_set_by_pointer_saved_and_undone() {
-    let desk = opened();
+    let desk = opened(&[]);
     let before = desk.until("a light", |status| status["lights_at"][0].is_array());
     let shown = desk.rested();
 
@@ -95,7 +95,7 @@ fn a_look_is_set_by_pointer_saved_and_undone() {
 
 #[test]
 fn a_bad_file_that_is_dropped_leaves_the_picture() {
-    let mut desk = opened();
+    let mut desk = opened(&[]);
     fs::write(desk.path("bad.exr"), "no photo").unwrap();
     photo::write(&desk.path("other.exr"), &lamp(), &WriteOptions::default()).unwrap();
     let before = desk.until("a light", |status| status["lights_at"][0].is_array());
@@ -112,7 +112,7 @@ fn a_bad_file_that_is_dropped_leaves_the_picture() {
 
 #[test]
 fn the_window_is_looked_at_made_small_hidden_and_closed() {
-    let mut desk = opened();
+    let mut desk = opened(&[]);
     let name = desk.to_window(&["getwindowname"], &[]);
     assert!(name.contains("lamp.exr"), "{name}");
     // The photo alone and back, the glare alone and back.
@@ -141,6 +141,27 @@ fn the_window_is_looked_at_made_small_hidden_and_closed() {
     desk.to_window(&["windowfocus"], &[]);
     desk.key("f");
     assert!(shows_the_lamp(&desk), "it comes back");
+    desk.key("ctrl+q");
+    desk.closed();
+}
+
+#[test]
+fn a_context_that_is_lost_is_made_anew_under_the_window() {
+    let mut desk = opened(&["--lose-after", "12"]);
+    let before = desk.until("a light", |status| status["lights_at"][0].is_array());
+    let (mut from, mut now) = (place(&before["lights_at"][0]), before);
+    // More than twelve frames, and those after them are on another context.
+    for _ in 0..3 {
+        let to = [from[0] + 60.0, from[1] + 20.0];
+        desk.drag(from, to);
+        let arrived = |at: [f64; 2]| (at[0] - to[0]).abs() < 3.0 && (at[1] - to[1]).abs() < 3.0;
+        now = desk.until("a light that moved", |status| arrived(place(&status["lights_at"][0])));
+        from = place(&now["lights_at"][0]);
+    }
+    assert_eq!(now["notices"].as_array().unwrap().len(), 0, "{now:#}");
+    assert!(now["devices"] == 2, "{now:#}");
+    desk.key("ctrl+z");
+    desk.until("the drag before", |status| status["lights"] != now["lights"]);
     desk.key("ctrl+q");
     desk.closed();
 }

@@ -84,7 +84,10 @@ impl Platform for Surfaceless {
 impl Drop for Surfaceless {
     fn drop(&mut self) {
         unsafe {
-            self.egl.MakeCurrent(self.display, egl::NO_SURFACE, egl::NO_SURFACE, egl::NO_CONTEXT);
+            // Another one may be current by now.
+            if self.egl.GetCurrentContext() == self.context {
+                self.egl.MakeCurrent(self.display, egl::NO_SURFACE, egl::NO_SURFACE, egl::NO_CONTEXT);
+            }
             self.egl.DestroyContext(self.display, self.context);
         }
     }

@@ -4,6 +4,7 @@ mod egl;
 mod osmesa;
 pub(in crate::gpu) mod window;
 
+use std::cell::Cell;
 use std::fmt;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -57,6 +58,11 @@ impl fmt::Display for Backend {
 trait Platform {
     /// How the context came about, e.g. "EGL device" or "OSMesa".
     fn route(&self) -> String;
+
+    /// Whether the driver says that the context was lost; without a window nobody asks it to say so.
+    fn is_lost(&self) -> bool {
+        false
+    }
 }
 
 /// A current GL context on this thread. GL objects hold it by [`Rc`], so it outlives them all.
@@ -65,6 +71,8 @@ pub struct Device {
     gl: Arc<glow::Context>,
     info: Info,
     platform: Box<dyn Platform>,
+    lost: Cell<bool>,
+    abandoned: Cell<bool>,
 }
 
 /// What the driver says about itself.
@@ -155,12 +163,31 @@ impl Device {
         let info = describe(&gl, backend, platform.route());
         // egui's painter asks for an `Arc`; nothing leaves this thread.
         #[allow(clippy::arc_with_non_send_sync)]
-        Ok(Self { gl: Arc::new(gl), info, platform })
+        Ok(Self { gl: Arc::new(gl), info, platform, lost: Cell::default(), abandoned: Cell::default() })
     }
 
     /// The GL functions.
     pub(in crate::gpu) fn gl(&self) -> &glow::Context {
         &self.gl
+    }
+
+    /// The GL functions, for someone who frees what was made on the device; none where it went with its context.
+    pub(in crate::gpu) fn to_free(&self) -> Option<&glow::Context> {
+        (!self.abandoned.get()).then_some(&*self.gl)
+    }
+
+    /// Whether the driver says that the context was lost, as where a graphics card is reset; then nothing that was made
+    /// on it can be used.
+    pub fn is_lost(&self) -> bool {
+        // A driver that is ready again says so, and the context is no better for it.
+        self.lost.set(self.lost.get() || self.platform.is_lost());
+        self.lost.get()
+    }
+
+    /// From now on the context may not be current any more, and must not be used: what was made on it goes with it, and
+    /// is not freed one by one.
+    pub fn abandon(&self) {
+        self.abandoned.set(true);
     }
 
     /// The GL functions, for a painter that keeps them.

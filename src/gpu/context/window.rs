@@ -2,13 +2,15 @@
 
 use std::num::NonZeroU32;
 use std::rc::Rc;
+use std::time::Duration;
 
+use glow::HasContext as _;
 use glutin::config::{Api, Config, ConfigTemplateBuilder, GlConfig as _};
 use glutin::context::{
-    ContextApi, ContextAttributesBuilder, GlProfile, NotCurrentContext, PossiblyCurrentContext, Version,
+    ContextApi, ContextAttributesBuilder, GlProfile, NotCurrentContext, PossiblyCurrentContext, Robustness, Version,
 };
 use glutin::display::{Display as GlDisplay, DisplayApiPreference, GetGlDisplay as _, GlDisplay as _};
-use glutin::prelude::NotCurrentGlContext as _;
+use glutin::prelude::{NotCurrentGlContext as _, PossiblyCurrentGlContext as _};
 use glutin::surface::{GlSurface as _, SurfaceAttributesBuilder, SwapInterval, WindowSurface};
 use libloading::Library;
 use winit::event_loop::{ActiveEventLoop, EventLoop};
@@ -21,6 +23,10 @@ use crate::{Error, Result};
 
 /// What winit loads at run time on X11 and would panic without.
 const X11_LIBRARIES: [&str; 2] = ["libxkbcommon.so.0", "libxkbcommon-x11.so.0"];
+
+/// How often a context that was lost is made anew before that is given up.
+const ATTEMPTS: usize = 10;
+const BETWEEN_ATTEMPTS: Duration = Duration::from_millis(300);
 
 /// An event loop on the display that the environment names.
 ///
@@ -92,12 +98,7 @@ impl Display {
             GlDisplay::Egl(_) => "EGL window",
             GlDisplay::Glx(_) => "GLX window",
         };
-        let attributes = ContextAttributesBuilder::new()
-            .with_context_api(ContextApi::OpenGl(Some(Version::new(REQUIRED.0, REQUIRED.1))))
-            .with_profile(GlProfile::Core)
-            .build(None);
-        let context = unsafe { display.create_context(&config, &attributes) }
-            .map_err(|error| format!("no core context of OpenGL 4.3: {error}"))?;
+        let context = new_context(&config)?;
         Ok(Self { config, context, route })
     }
 
@@ -108,31 +109,82 @@ impl Display {
     pub fn window(self, event_loop: &ActiveEventLoop, attributes: WindowAttributes) -> Result<(Rc<Device>, Surface)> {
         let window = glutin_winit::finalize_window(event_loop, attributes, &self.config)
             .map_err(|error| Error::NoDisplay { reason: error.to_string() })?;
-        let handle = window.window_handle().map_err(|error| Error::NoDisplay { reason: error.to_string() })?.as_raw();
-        let route = self.route;
+        let Self { config, context, route } = self;
         let refused = |reason: String| Error::NoContext { reasons: vec![format!("{route}: {reason}")] };
-        let display = self.config.display();
-        let (width, height) = sides(window.inner_size().into());
-        let attributes = SurfaceAttributesBuilder::<WindowSurface>::new().build(handle, width, height);
-        let surface = unsafe { display.create_window_surface(&self.config, &attributes) }
-            .map_err(|error| refused(error.to_string()))?;
-        let context = self.context.make_current(&surface).map_err(|error| refused(error.to_string()))?;
-        let gl = unsafe { glow::Context::from_loader_function_cstr(|name| display.get_proc_address(name)) };
-        let context = Rc::new(context);
-        let platform = OnScreen { _context: context.clone(), route };
-        let device = Device::new(gl, Backend::Window, Box::new(platform)).map_err(refused)?;
-        Ok((Rc::new(device), Surface { surface, context, window }))
+        let surface = new_surface(&config, &window).map_err(refused)?;
+        let (device, context) = current(&config, context, &surface, route).map_err(refused)?;
+        Ok((device, Surface { surface, context, config, route, window }))
     }
+}
+
+/// A context that says when it is lost, or, where the driver has none, one that does not.
+fn new_context(config: &Config) -> Result<NotCurrentContext, String> {
+    let create = |robustness| {
+        let attributes = ContextAttributesBuilder::new()
+            .with_context_api(ContextApi::OpenGl(Some(Version::new(REQUIRED.0, REQUIRED.1))))
+            .with_profile(GlProfile::Core)
+            .with_robustness(robustness)
+            .build(None);
+        unsafe { config.display().create_context(config, &attributes) }
+    };
+    create(Robustness::RobustLoseContextOnReset)
+        .or_else(|_| create(Robustness::NotRobust))
+        .map_err(|error| format!("no core context of OpenGL 4.3: {error}"))
+}
+
+fn new_surface(config: &Config, window: &Window) -> Result<glutin::surface::Surface<WindowSurface>, String> {
+    let handle = window.window_handle().map_err(|error| error.to_string())?.as_raw();
+    let (width, height) = sides(window.inner_size().into());
+    let attributes = SurfaceAttributesBuilder::<WindowSurface>::new().build(handle, width, height);
+    unsafe { config.display().create_window_surface(config, &attributes) }.map_err(|error| error.to_string())
+}
+
+/// Makes a context current on a surface.
+fn current(
+    config: &Config,
+    context: NotCurrentContext,
+    surface: &glutin::surface::Surface<WindowSurface>,
+    route: &'static str,
+) -> Result<(Rc<Device>, Rc<PossiblyCurrentContext>), String> {
+    let context = Rc::new(context.make_current(surface).map_err(|error| error.to_string())?);
+    let display = config.display();
+    let gl = unsafe { glow::Context::from_loader_function_cstr(|name| display.get_proc_address(name)) };
+    let reset_status = reset_status(&gl, &display);
+    let platform = OnScreen { _context: context.clone(), route, reset_status };
+    Ok((Rc::new(Device::new(gl, Backend::Window, Box::new(platform))?), context))
+}
+
+type ResetStatus = unsafe extern "system" fn() -> u32;
+
+/// `glGetGraphicsResetStatus`, which glow does not have, where the driver says that it has it.
+fn reset_status(gl: &glow::Context, display: &GlDisplay) -> Option<ResetStatus> {
+    let (version, extensions) = (gl.version(), gl.supported_extensions());
+    let name = if (version.major, version.minor) >= (4, 5) {
+        c"glGetGraphicsResetStatus"
+    } else if extensions.contains("GL_KHR_robustness") {
+        c"glGetGraphicsResetStatusKHR"
+    } else if extensions.contains("GL_ARB_robustness") {
+        c"glGetGraphicsResetStatusARB"
+    } else {
+        return None;
+    };
+    // The signature is that of the specification.
+    unsafe { std::mem::transmute::<*const std::ffi::c_void, Option<ResetStatus>>(display.get_proc_address(name)) }
 }
 
 struct OnScreen {
     _context: Rc<PossiblyCurrentContext>,
     route: &'static str,
+    reset_status: Option<ResetStatus>,
 }
 
 impl Platform for OnScreen {
     fn route(&self) -> String {
         self.route.into()
+    }
+
+    fn is_lost(&self) -> bool {
+        self.reset_status.is_some_and(|ask| unsafe { ask() } != glow::NO_ERROR)
     }
 }
 
@@ -141,6 +193,8 @@ pub struct Surface {
     // The window goes last: fields drop in order of declaration.
     surface: glutin::surface::Surface<WindowSurface>,
     context: Rc<PossiblyCurrentContext>,
+    config: Config,
+    route: &'static str,
     window: Window,
 }
 
@@ -148,6 +202,38 @@ impl Surface {
     /// The window.
     pub fn window(&self) -> &Window {
         &self.window
+    }
+
+    /// Puts a new context and surface in the place of ones that were lost, on the same window. The device before has to
+    /// be abandoned.
+    ///
+    /// # Errors
+    /// [`Error::NoContext`] where the driver refuses for some seconds; the window is closed then.
+    pub fn rebuild(self) -> Result<(Rc<Device>, Self)> {
+        let Self { surface, context, config, route, window } = self;
+        // A context that is lost may refuse even this, and is not current then either.
+        let _ = context.make_not_current_in_place();
+        // A window has one surface at a time.
+        drop(surface);
+        drop(context);
+        let mut attempts = 0;
+        loop {
+            let made = new_context(&config).and_then(|context| {
+                let surface = new_surface(&config, &window)?;
+                current(&config, context, &surface, route).map(|(device, context)| (device, context, surface))
+            });
+            match made {
+                Ok((device, context, surface)) => {
+                    return Ok((device, Self { surface, context, config, route, window }));
+                }
+                // A card that is being reset takes a while.
+                Err(_) if attempts < ATTEMPTS => {
+                    attempts += 1;
+                    std::thread::sleep(BETWEEN_ATTEMPTS);
+                }
+                Err(reason) => return Err(Error::NoContext { reasons: vec![format!("{route}: {reason}")] }),
+            }
+        }
     }
 
     /// Shows what was drawn.

@@ -16,16 +16,21 @@ use crate::viewer::model::{Look, State, command_line};
 /// How often the file of a look is looked at while nothing else happens.
 const LOOK_AGAIN: Duration = Duration::from_secs(2);
 
+/// How often a look is remembered while a gesture goes on, in seconds.
+const KEEP_AGAIN: f64 = 2.0;
+
 /// What the window knows of files besides the photos.
 #[derive(Default)]
 pub struct Files {
     ask: Option<Ask>,
     exports: Vec<Export>,
     /// Where looks and recent photos are remembered, if anywhere.
-    state: Option<State>,
+    pub(super) state: Option<State>,
     /// The look of last time, and what is remembered by now.
     last: Option<Look>,
-    kept: Option<Look>,
+    pub(super) kept: Option<Look>,
+    /// When that was, in egui's seconds.
+    kept_at: f64,
     recent: Vec<PathBuf>,
 }
 
@@ -113,8 +118,17 @@ impl App {
         }
     }
 
-    /// Remembers the look, once it rests.
-    pub(super) fn remember_look(&mut self) {
+    /// Remembers the look once it rests, and now and then while a gesture goes on.
+    pub(super) fn remember_look(&mut self, gesture: bool) {
+        let now = self.context.time();
+        if !gesture || now - self.files.kept_at > KEEP_AGAIN {
+            self.write_look();
+            self.files.kept_at = now;
+        }
+    }
+
+    /// Remembers the look, where it is not the one that the photo was opened with.
+    pub(super) fn write_look(&mut self) {
         let Some((_, document)) = self.documents.get(self.current) else { return };
         let Some(state) = &self.files.state else { return };
         if self.files.kept.as_ref() == Some(&document.look) || document.look == document.opened {

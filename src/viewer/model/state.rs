@@ -55,12 +55,17 @@ impl State {
         write_scene(&self.place(LOOK)?, &look.to_scene(), true)
     }
 
+    /// Where the look is kept.
+    pub fn look_file(&self) -> PathBuf {
+        self.folder.join(LOOK)
+    }
+
     /// The look that was kept, if there is one.
     ///
     /// # Errors
     /// Those of [`read_scene`].
     pub fn look(&self) -> Result<Option<Look>> {
-        let path = self.folder.join(LOOK);
+        let path = self.look_file();
         if path.exists() { read_scene(&path).and_then(Look::from_scene).map(Some) } else { Ok(None) }
     }
 

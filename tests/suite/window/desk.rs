@@ -78,10 +78,10 @@ impl Desk {
         command
     }
 
-    /// Opens the window on a photo, and gives it the keyboard.
-    pub fn open(&mut self, photo: &Path) {
+    /// Opens the window on a photo, with options, and gives it the keyboard.
+    pub fn open(&mut self, photo: &Path, options: &[&str]) {
         let mut command = self.command(env!("CARGO_BIN_EXE_vglare"));
-        command.arg("view").arg(photo).arg("--status").arg(self.path("status.json"));
+        command.arg("view").args(options).arg(photo).arg("--status").arg(self.path("status.json"));
         let told = File::create(self.path("told")).unwrap();
         command.stdout(told.try_clone().unwrap()).stderr(told);
         let window = command.spawn().unwrap();

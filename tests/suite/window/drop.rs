@@ -20,7 +20,6 @@ type Result<T> = std::result::Result<T, Box<dyn Error>>;
 /// The side that lets go of a file.
 struct Source {
     server: RustConnection,
-    own: Window,
     target: Window,
     /// What it says of the file when asked.
     uri: String,
@@ -33,7 +32,7 @@ pub fn drop_file(display: &str, target: Window, at: [u16; 2], file: &Path) -> Re
     let own = server.generate_id()?;
     let (depth, class) = (COPY_DEPTH_FROM_PARENT, WindowClass::INPUT_OUTPUT);
     server.create_window(depth, own, root, 0, 0, 1, 1, 0, class, COPY_FROM_PARENT, &CreateWindowAux::new())?;
-    let source = Source { server, own, target, uri: format!("file://{}\r\n", file.display()) };
+    let source = Source { server, target, uri: format!("file://{}\r\n", file.display()) };
     source.server.set_selection_owner(own, source.atom("XdndSelection")?, CURRENT_TIME)?;
 
     let (list, copy) = (source.atom("text/uri-list")?, source.atom("XdndActionCopy")?);
