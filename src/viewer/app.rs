@@ -1,5 +1,6 @@
 //! The whole window but the window: what is open, and one frame of it on a screen.
 
+mod ask;
 mod device;
 mod files;
 
@@ -338,6 +339,7 @@ impl App {
         self.tabs(ui);
         self.strips(ui);
         self.exports(ui);
+        self.asked_elsewhere(ui);
         // What was typed into an answer is no shortcut, even where it was all typed in one frame.
         let asks = asked || self.asks();
         let Some((_, document)) = self.documents.get_mut(self.current) else {

@@ -39,7 +39,8 @@ pub enum Answer {
 }
 
 impl Purpose {
-    fn words(self) -> [&'static str; 2] {
+    /// What it is called, and what is done with the path.
+    pub fn words(self) -> [&'static str; 2] {
         match self {
             Self::OpenPhoto => ["Open a photo", "Open"],
             Self::OpenLook => ["Open a look, as a scene file", "Open"],
@@ -49,7 +50,8 @@ impl Purpose {
         }
     }
 
-    fn saves(self) -> bool {
+    /// Whether something is written there.
+    pub fn saves(self) -> bool {
         matches!(self, Self::SavePicture | Self::SaveGlare | Self::SaveLook)
     }
 }

@@ -8,7 +8,8 @@
 //! | `model` | what a person sets of the glare: looks, their history, their command line; no egui, no GL |
 //! | `viewing` | what a person sets of the view, and where pixels lie on the screen for it |
 //! | `stage` | the picture on the device; computes what has changed, and nothing else |
-//! | `ask`, `export` | questions for paths, and pictures written in the background |
+//! | `ask`, `dialog` | questions for paths, in the window and by the desktop |
+//! | `export` | pictures written in the background |
 //! | `input` | the pointer's buttons, a frame each |
 //! | `loader` | files, read in the background |
 //! | `timings` | how long the last frames took |
@@ -28,6 +29,7 @@ mod app;
 mod ask;
 mod canvas;
 mod control;
+mod dialog;
 mod document;
 mod export;
 mod input;

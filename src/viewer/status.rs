@@ -42,6 +42,8 @@ pub struct Status {
     pub busy: bool,
     /// Whether the window asks for a path.
     pub asks: bool,
+    /// Whether a dialog of the desktop asks for one.
+    pub dialog: bool,
     /// What went wrong and was not dismissed.
     pub notices: Vec<String>,
     /// On how many devices it has been drawn, one after the other.
@@ -75,6 +77,7 @@ impl Status {
             steps: document.map(super::Document::steps).unwrap_or_default(),
             busy: app.is_reading() || app.is_writing(),
             asks: app.asks(),
+            dialog: app.asks_elsewhere(),
             notices: app.notices().to_vec(),
             devices: app.devices(),
             counts: app.counts(),

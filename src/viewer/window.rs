@@ -120,6 +120,7 @@ impl Start {
         });
         let mut app = App::new(&device, self.look, wake)?;
         state.clone().into_iter().for_each(|state| app.remember(state));
+        app.use_dialogs();
         self.photos.into_iter().for_each(|path| app.open(path));
         let window = surface.window();
         let input = egui_winit::State::new(

@@ -165,3 +165,44 @@ fn a_context_that_is_lost_is_made_anew_under_the_window() {
     desk.key("ctrl+q");
     desk.closed();
 }
+
+#[test]
+fn the_desktops_dialogs_ask_while_the_window_goes_on() {
+    let mut desk = opened(&[]);
+    let before = desk.until("a photo", |status| status["photo"] == "lamp.exr");
+    let (saved, other, go) = (desk.path("saved.exr"), desk.path("other.exr"), desk.path("go"));
+    let wait = format!(
+        "echo \"$@\" >{}; until [ -e {} ]; do /bin/sleep 0.05; done",
+        desk.path("asked").display(),
+        go.display()
+    );
+    desk.zenity(&format!("{wait}; echo {}", saved.display()));
+    desk.key("ctrl+s");
+    desk.until("a dialog", |status| status["dialog"] == true && status["asks"] == false);
+    // The window goes on meanwhile, and what is shown then is not what is saved.
+    photo::write(&other, &lamp(), &WriteOptions::default()).unwrap();
+    drop::drop_file(desk.display(), desk.id(), [400, 300], &other).unwrap();
+    desk.until("the other photo", |status| status["photo"] == "other.exr");
+    fs::write(&go, "").unwrap();
+    desk.until("a picture", |status| status["dialog"] == false && status["busy"] == false && saved.exists());
+    let asked = fs::read_to_string(desk.path("asked")).unwrap();
+    assert!(asked.contains("--save") && asked.contains("lamp-glare.exr") && asked.contains("*.exr"), "{asked}");
+
+    // One that is closed without an answer, later than nobody could; one that cannot be shown; and one for several.
+    desk.zenity("/bin/sleep 0.7; exit 1");
+    desk.key("ctrl+s");
+    desk.until("a dialog", |status| status["dialog"] == true);
+    desk.until("none", |status| status["dialog"] == false && status["asks"] == false);
+    desk.zenity("exit 1");
+    desk.key("ctrl+s");
+    desk.until("a question in the window", |status| status["asks"] == true);
+    desk.key("Escape");
+    desk.until("no question", |status| status["asks"] == false);
+    desk.zenity(&format!("echo '{}|{}'", saved.display(), desk.path("lamp.exr").display()));
+    desk.key("ctrl+o");
+    desk.until("the photos", |status| status["busy"] == false && status["photo"] != "other.exr");
+    let now = desk.until("no dialog", |status| status["dialog"] == false);
+    assert_eq!(now["notices"], before["notices"]);
+    desk.key("ctrl+q");
+    desk.closed();
+}

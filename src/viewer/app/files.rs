@@ -6,9 +6,10 @@ use std::time::{Duration, SystemTime};
 use egui::{CentralPanel, Key, Modifiers, Panel, Ui};
 
 use super::App;
+use super::ask::{Questions, likely};
 use crate::Result;
 use crate::scene::{read_scene, write_scene};
-use crate::viewer::ask::{Answer, Ask, Purpose};
+use crate::viewer::ask::Purpose;
 use crate::viewer::document::Document;
 use crate::viewer::export::{Export, Subject};
 use crate::viewer::model::{Look, State, command_line};
@@ -22,7 +23,7 @@ const KEEP_AGAIN: f64 = 2.0;
 /// What the window knows of files besides the photos.
 #[derive(Default)]
 pub struct Files {
-    ask: Option<Ask>,
+    pub(super) questions: Questions,
     exports: Vec<Export>,
     /// Where looks and recent photos are remembered, if anywhere.
     pub(super) state: Option<State>,
@@ -36,7 +37,7 @@ pub struct Files {
 
 /// The scene file that a look was read from or written to last.
 pub struct LookFile {
-    path: PathBuf,
+    pub(super) path: PathBuf,
     modified: Option<SystemTime>,
     /// The look that it holds.
     look: Look,
@@ -174,14 +175,9 @@ impl App {
         if watched { LOOK_AGAIN } else { Duration::MAX }
     }
 
-    /// Whether a question stands over everything else.
-    pub fn asks(&self) -> bool {
-        self.files.ask.is_some()
-    }
-
     /// The bar at the top.
     pub(super) fn bar(&mut self, ui: &mut Ui) {
-        let mut command = (self.files.ask.is_none() && !ui.ctx().text_edit_focused()).then(|| pressed(ui)).flatten();
+        let mut command = (!self.asks() && !ui.ctx().text_edit_focused()).then(|| pressed(ui)).flatten();
         let (has_photo, mut recalled) = (self.document().is_some(), None);
         Panel::top("bar").show(ui, |ui| {
             ui.horizontal(|ui| {
@@ -191,6 +187,16 @@ impl App {
                         if ui.add_enabled(enabled, egui::Button::new(name)).clicked() {
                             command = Some(choice);
                         }
+                    }
+                    if self.files.questions.by_dialog() {
+                        ui.menu_button("Type a path…", |ui| {
+                            for (choice, name) in TYPED {
+                                let enabled = has_photo || choice == Purpose::OpenPhoto;
+                                if ui.add_enabled(enabled, egui::Button::new(name)).clicked() {
+                                    command = Some(Choice::Type(choice));
+                                }
+                            }
+                        });
                     }
                     let last = self.files.last.as_ref().filter(|_| has_photo);
                     if last.is_some() && ui.button("Take the look of last time").clicked() {
@@ -213,37 +219,12 @@ impl App {
             document.set_look(look);
         }
         match command {
-            Some(Choice::Ask(purpose)) => self.ask(purpose),
+            Some(Choice::Ask(purpose)) => self.ask(purpose, false),
+            Some(Choice::Type(purpose)) => self.ask(purpose, true),
             Some(Choice::Copy) => self.copy_command(),
             None => {}
         }
         self.answer();
-    }
-
-    /// Asks for a path; saving and looks need a document.
-    fn ask(&mut self, purpose: Purpose) {
-        let likely = self.document().map(|document| likely(document, purpose));
-        if likely.is_some() || purpose == Purpose::OpenPhoto {
-            self.files.ask = Some(Ask::new(purpose, &likely.unwrap_or_default()));
-        }
-    }
-
-    /// Does what a path was asked for.
-    fn answer(&mut self) {
-        let Some(ask) = &mut self.files.ask else { return };
-        let answer = ask.show(&self.context);
-        if answer == Answer::None {
-            return;
-        }
-        self.files.ask = None;
-        let Answer::Path(purpose, path) = answer else { return };
-        match purpose {
-            Purpose::OpenPhoto => self.open(path),
-            Purpose::OpenLook => self.open_look(&path),
-            Purpose::SavePicture => self.export(Subject::Picture, &path),
-            Purpose::SaveGlare => self.export(Subject::Glare, &path),
-            Purpose::SaveLook => self.save_look(&path),
-        }
     }
 
     /// What is there to begin with.
@@ -284,6 +265,8 @@ impl App {
 #[derive(Clone, Copy, PartialEq)]
 enum Choice {
     Ask(Purpose),
+    /// The same by a path that is typed in the window.
+    Type(Purpose),
     Copy,
 }
 
@@ -296,6 +279,14 @@ const COMMANDS: [(Choice, &str); 6] = [
     (Choice::Copy, "Copy the command line (Ctrl+Shift+C)"),
 ];
 
+const TYPED: [(Purpose, &str); 5] = [
+    (Purpose::OpenPhoto, "Open a photo"),
+    (Purpose::SavePicture, "Save the picture"),
+    (Purpose::SaveGlare, "Save the glare"),
+    (Purpose::OpenLook, "Open a look"),
+    (Purpose::SaveLook, "Save the look"),
+];
+
 fn pressed(ui: &Ui) -> Option<Choice> {
     let shift = Modifiers::COMMAND | Modifiers::SHIFT;
     let keys = [
@@ -305,22 +296,6 @@ fn pressed(ui: &Ui) -> Option<Choice> {
         (Modifiers::COMMAND, Key::S, Choice::Ask(Purpose::SavePicture)),
     ];
     ui.input_mut(|input| keys.into_iter().find(|&(with, key, _)| input.consume_key(with, key)).map(|(.., what)| what))
-}
-
-/// Where a file is likely to go or to come from.
-fn likely(document: &Document, purpose: Purpose) -> PathBuf {
-    let stem = document.path.file_stem().unwrap_or_default().to_string_lossy();
-    let beside = |name: String| document.path.with_file_name(name);
-    match purpose {
-        Purpose::OpenPhoto | Purpose::OpenLook => {
-            document.path.parent().map(|folder| folder.join("")).unwrap_or_default()
-        }
-        Purpose::SavePicture => beside(format!("{stem}-glare.exr")),
-        Purpose::SaveGlare => beside(format!("{stem}-glare-alone.exr")),
-        Purpose::SaveLook => {
-            document.file.as_ref().map_or_else(|| beside(format!("{stem}.toml")), |file| file.path.clone())
-        }
-    }
 }
 
 /// The command line for a document; its look file is named where it holds the look as it is.

@@ -2,6 +2,7 @@
 
 use std::fs::{self, File};
 use std::io::{BufRead as _, BufReader};
+use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
@@ -78,10 +79,20 @@ impl Desk {
         command
     }
 
+    /// Gives the window's desktop a dialog for paths: what `zenity` is to do, in a shell's words.
+    pub fn zenity(&self, does: &str) {
+        let path = self.path("bin/zenity");
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(&path, format!("#!/bin/sh\n{does}\n")).unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+    }
+
     /// Opens the window on a photo, with options, and gives it the keyboard.
     pub fn open(&mut self, photo: &Path, options: &[&str]) {
         let mut command = self.command(env!("CARGO_BIN_EXE_vglare"));
         command.arg("view").args(options).arg(photo).arg("--status").arg(self.path("status.json"));
+        // No programs but those of the test.
+        command.env("PATH", self.path("bin"));
         let told = File::create(self.path("told")).unwrap();
         command.stdout(told.try_clone().unwrap()).stderr(told);
         let window = command.spawn().unwrap();
