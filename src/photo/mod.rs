@@ -51,7 +51,7 @@ pub use read::{MAX_PIXELS, read};
 pub(crate) use shown::Shown;
 pub use tone::ToneMap;
 pub(crate) use transfer::srgb_encode;
-pub use write::{WriteOptions, check_name, check_target, write};
+pub use write::{WriteOptions, check_name, check_target, write, write_unless};
 
 use crate::frame::Frame;
 

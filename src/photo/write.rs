@@ -1,7 +1,7 @@
 //! Writes a photo beside its target, then renames it.
 
 use std::fs::{self, File, Permissions};
-use std::io::{BufWriter, Cursor, Seek, Write};
+use std::io::{self, BufWriter, Cursor, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::{Builder, NamedTempFile};
@@ -73,12 +73,25 @@ pub fn check_target(path: &Path, photo: &Photo, options: &WriteOptions) -> Resul
 /// # Errors
 /// Those of [`check_target`], and [`Error::Write`] where the disk is full or the system refuses.
 pub fn write(path: &Path, photo: &Photo, options: &WriteOptions) -> Result<()> {
+    write_unless(path, photo, options, || false)
+}
+
+/// The same, unless it is called off: `cancelled` is asked with every quarter of a megabyte, and before the file gets
+/// its name.
+///
+/// # Errors
+/// Those of [`write`], and [`Error::Cancelled`]; nothing is left behind then, unless `path` is a pipe.
+pub fn write_unless(path: &Path, photo: &Photo, options: &WriteOptions, cancelled: impl Fn() -> bool) -> Result<()> {
     let plan = plan(path, photo, options)?;
-    let complain = |reason: Reason| Error::write(path, reason);
+    let complain = |reason: Reason| if cancelled() { Error::Cancelled } else { Error::write(path, reason) };
     match &plan.target {
         Target::File { path: target, folder } => {
             let file = temporary(folder).map_err(complain)?;
-            plan.encode(file.as_file(), photo).map_err(complain)?;
+            let guarded = Guarded { file: file.as_file(), cancelled: &cancelled };
+            plan.encode(guarded, photo).map_err(complain)?;
+            if cancelled() {
+                return Err(Error::Cancelled);
+            }
             persist(file, path, target, options.overwrite)
         }
         Target::Stream => {
@@ -88,6 +101,28 @@ pub fn write(path: &Path, photo: &Photo, options: &WriteOptions) -> Result<()> {
             let stream = File::options().write(true).open(path);
             stream.and_then(|mut stream| stream.write_all(memory.get_ref())).map_err(|e| complain(e.into()))
         }
+    }
+}
+
+/// A file that takes no more once it is called off.
+struct Guarded<'a, F> {
+    file: F,
+    cancelled: &'a dyn Fn() -> bool,
+}
+
+impl<F: Write> Write for Guarded<'_, F> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if (self.cancelled)() { Err(io::Error::other("cancelled")) } else { self.file.write(bytes) }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl<F: Seek> Seek for Guarded<'_, F> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.file.seek(to)
     }
 }
 

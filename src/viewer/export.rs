@@ -30,6 +30,9 @@ pub struct Export {
     task: Task<Result<Vec<String>>>,
 }
 
+/// What is done one after the other; how long each takes is not known beforehand.
+const STEPS: [&str; 5] = ["finding the lights", "planning", "computing the glare", "measuring the error", "writing"];
+
 /// How far it is, for both threads.
 struct Progress {
     step: Mutex<&'static str>,
@@ -58,7 +61,7 @@ impl Export {
     /// # Errors
     /// [`Error::Write`] where the system gives no thread.
     pub fn start(document: &Document, subject: Subject, path: &Path, wake: &Wake) -> Result<Self> {
-        let step = Mutex::new("finding the lights");
+        let step = Mutex::new(STEPS[0]);
         let progress = Arc::new(Progress { step, cancelled: AtomicBool::new(false), wake: wake.clone() });
         let (photo, look) = (document.photo.clone(), document.look.clone());
         let (target, watch) = (path.to_owned(), progress.clone());
@@ -72,7 +75,13 @@ impl Export {
         *self.progress.step.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Asks it to stop; nothing is written then, unless it was being written already.
+    /// Which part of the steps is done, 0 to 1.
+    pub fn part(&self) -> f32 {
+        let step = self.step();
+        STEPS.iter().position(|&other| other == step).unwrap_or(0) as f32 / STEPS.len() as f32
+    }
+
+    /// Asks it to stop: after the step that goes on, or in the middle of writing. The file does not appear then.
     pub fn cancel(&self) {
         self.progress.cancelled.store(true, Ordering::Relaxed);
     }
@@ -98,11 +107,11 @@ fn write(photo: &Photo, look: &Look, subject: Subject, path: &Path, watch: &Prog
     if watch.cancelled() {
         return Err(Error::Cancelled);
     }
-    watch.step("writing");
+    watch.step(STEPS[4]);
     let picture = match job.glare.take() {
         Some(glare) => job.photo.companion(glare),
         None => job.photo,
     };
-    photo::write(path, &picture, &options)?;
+    photo::write_unless(path, &picture, &options, || watch.cancelled())?;
     Ok(job.warnings)
 }

@@ -3,13 +3,14 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-use egui::{CentralPanel, Key, Modifiers, Panel, Ui};
+use egui::{CentralPanel, Key, Modifiers, Panel, ProgressBar, Response, Ui};
 
 use super::App;
 use super::ask::{Questions, likely};
 use crate::Result;
 use crate::scene::{read_scene, write_scene};
 use crate::viewer::ask::Purpose;
+use crate::viewer::control::place;
 use crate::viewer::document::Document;
 use crate::viewer::export::{Export, Subject};
 use crate::viewer::model::{Look, State, command_line};
@@ -178,15 +179,20 @@ impl App {
     /// The bar at the top.
     pub(super) fn bar(&mut self, ui: &mut Ui) {
         let mut command = (!self.asks() && !ui.ctx().text_edit_focused()).then(|| pressed(ui)).flatten();
-        let (has_photo, mut recalled) = (self.document().is_some(), None);
+        let (has_photo, mut recalled, mut again) = (self.document().is_some(), None, None);
         Panel::top("bar").show(ui, |ui| {
             ui.horizontal(|ui| {
-                ui.menu_button("File", |ui| {
+                let menu = ui.menu_button("File", |ui| {
                     for (choice, name) in COMMANDS {
                         let enabled = has_photo || choice == Choice::Ask(Purpose::OpenPhoto);
-                        if ui.add_enabled(enabled, egui::Button::new(name)).clicked() {
+                        let item = ui.add_enabled(enabled, egui::Button::new(name));
+                        mark(ui, name, &item);
+                        if item.clicked() {
                             command = Some(choice);
                         }
+                    }
+                    if !self.files.recent.is_empty() {
+                        ui.menu_button("Open again", |ui| again = recent(ui, &self.files.recent));
                     }
                     if self.files.questions.by_dialog() {
                         ui.menu_button("Type a path…", |ui| {
@@ -203,6 +209,7 @@ impl App {
                         recalled = last.cloned();
                     }
                 });
+                mark(ui, "File", &menu.response);
                 let Some((_, document)) = self.documents.get_mut(self.current) else { return };
                 let [undo, redo] = document.steps();
                 let button = egui::Button::new("Undo");
@@ -218,6 +225,7 @@ impl App {
         if let (Some(look), Some(document)) = (recalled, self.document_mut()) {
             document.set_look(look);
         }
+        again.into_iter().for_each(|path| self.open(path));
         match command {
             Some(Choice::Ask(purpose)) => self.ask(purpose, false),
             Some(Choice::Type(purpose)) => self.ask(purpose, true),
@@ -234,11 +242,7 @@ impl App {
             ui.vertical_centered(|ui| {
                 ui.add_space(0.3 * ui.available_height());
                 ui.label("Drop photos here");
-                for path in self.recent() {
-                    if ui.link(path.display().to_string()).on_hover_text("Open it again").clicked() {
-                        chosen = Some(path.clone());
-                    }
-                }
+                chosen = recent(ui, self.recent());
             });
         });
         if let Some(path) = chosen {
@@ -247,18 +251,46 @@ impl App {
     }
 
     /// What is being written.
-    pub(super) fn exports(&self, ui: &mut Ui) {
-        for (index, export) in self.files.exports.iter().enumerate() {
-            Panel::bottom(("export", index)).show(ui, |ui| {
+    pub(super) fn exports(&mut self, ui: &mut Ui) {
+        let mut index = 0;
+        self.files.exports.retain(|export| {
+            index += 1;
+            let strip = Panel::bottom(("export", index)).show(ui, |ui| {
                 ui.horizontal(|ui| {
-                    ui.label(format!("{}: {}", export.path.display(), export.step()));
-                    if ui.button("Cancel").clicked() {
-                        export.cancel();
-                    }
-                });
+                    ui.add(ProgressBar::new(export.part()).desired_width(220.0).text(export.step()));
+                    let cancel = ui.button("Cancel").on_hover_text("The file does not appear then");
+                    mark(ui, "Cancel writing", &cancel);
+                    ui.label(export.path.display().to_string());
+                    cancel.clicked()
+                })
+                .inner
             });
+            if strip.inner {
+                // It comes to an end by itself, and nobody waits for it.
+                export.cancel();
+            }
+            !strip.inner
+        });
+    }
+}
+
+/// Photos to be opened again; which of them is.
+fn recent(ui: &mut Ui, photos: &[PathBuf]) -> Option<PathBuf> {
+    let mut chosen = None;
+    for path in photos {
+        let name = path.display().to_string();
+        let link = ui.link(&name).on_hover_text("Open it again");
+        mark(ui, &name, &link);
+        if link.clicked() {
+            chosen = Some(path.clone());
         }
     }
+    chosen
+}
+
+/// Notes where something to click is, for scripts.
+fn mark(ui: &Ui, name: &str, what: &Response) {
+    ui.data_mut(|data| data.insert_temp(place(name), what.rect));
 }
 
 /// What the menu and its keys can ask for.

@@ -18,6 +18,22 @@ fn refusal(path: &Path, options: WriteOptions) -> String {
 }
 
 #[test]
+fn a_photo_that_is_called_off_leaves_nothing() {
+    let folder = Folder::new();
+    let photo = asymmetric(300, 200);
+    for name in ["a.exr", "a.hdr", "a.pfm", "a.tif", "a.png", "a.jpg"] {
+        // At once, and after the first part of the file.
+        for parts in [0, 1] {
+            let asked = std::cell::Cell::new(0);
+            let cancelled = || asked.replace(asked.get() + 1) >= parts;
+            let result = photo::write_unless(&folder.path(name), &photo, &WriteOptions::default(), cancelled);
+            assert!(matches!(result, Err(Error::Cancelled)), "{name}: {result:?}");
+        }
+    }
+    assert_eq!(fs::read_dir(folder.path(".")).unwrap().count(), 0, "nothing is left behind");
+}
+
+#[test]
 fn what_a_format_cannot_hold_is_refused() {
     let folder = Folder::new();
     let cases = [

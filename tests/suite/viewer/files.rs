@@ -62,6 +62,69 @@ fn the_picture_is_saved_under_the_name_that_is_typed() {
     assert_eq!(std::fs::read(&written).unwrap(), b"precious");
 }
 
+/// Clicks what is called so, which must be shown.
+fn click(session: &mut Session, name: &str) {
+    let at = session.app.control(name).unwrap_or_else(|| panic!("{name} is not shown")).center();
+    session.drag(at, Vec2::ZERO);
+}
+
+#[test]
+fn the_menu_saves_the_glare() {
+    let (folder, mut session) = in_a_folder();
+    click(&mut session, "File");
+    let at = session.app.control("Save the glare…").unwrap().center();
+    for pressed in [true, false] {
+        session.frame(vec![Event::PointerMoved(at)]);
+        session.frame(vec![session.button(at, pressed)]);
+    }
+    assert!(session.app.asks());
+    session.key(Modifiers::NONE, Key::Enter);
+    session.wait(|app| !app.is_writing());
+    assert_eq!(session.app.notices(), [] as [String; 0]);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_vglare"));
+    let path = |name: &str| folder.path().join(name);
+    command.args(["apply", "--quiet"]).arg(path("lamp.exr")).arg("-o").arg(path("out.exr"));
+    let done = command.arg("--glare").arg(path("glare.exr")).output().unwrap();
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let [window, apply] = ["lamp-glare-alone.exr", "glare.exr"].map(|name| std::fs::read(path(name)).unwrap());
+    assert!(window == apply, "the files differ");
+}
+
+#[test]
+fn a_photo_of_last_time_is_opened_again() {
+    let (folder, _) = in_a_folder();
+    let mut next = Session::new();
+    next.app.remember(State::in_folder(folder.path().join("state")));
+    next.settle();
+    let path = folder.path().join("lamp.exr");
+    click(&mut next, path.to_str().unwrap());
+    next.wait(|app| !app.is_reading());
+    assert_eq!(next.document().name(), "lamp.exr");
+    // One that is gone by now is told of.
+    std::fs::remove_file(&path).unwrap();
+    let mut last = Session::new();
+    last.app.remember(State::in_folder(folder.path().join("state")));
+    last.settle();
+    click(&mut last, path.to_str().unwrap());
+    last.wait(|app| !app.is_reading());
+    assert!(last.app.document().is_none() && last.app.notices()[0].contains("lamp.exr"));
+}
+
+#[test]
+fn a_picture_that_is_called_off_never_appears() {
+    let (folder, mut session) = in_a_folder();
+    let path = folder.path().join("window.exr");
+    session.app.export(Subject::Picture, &path);
+    session.frame(Vec::new());
+    let at = session.app.control("Cancel writing").unwrap().center();
+    session.frame(vec![Event::PointerMoved(at), session.button(at, true)]);
+    session.frame(vec![session.button(at, false)]);
+    assert!(!session.app.is_writing(), "the window lets go of it at once");
+    session.settle();
+    std::thread::sleep(Duration::from_secs(2));
+    assert!(!path.exists() && session.app.notices().is_empty());
+}
+
 #[test]
 fn two_presses_in_one_frame_undo_two_steps() {
     let (_folder, mut session) = in_a_folder();
