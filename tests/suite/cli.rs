@@ -10,6 +10,7 @@ mod refusals;
 mod rex;
 mod sequence;
 mod tradeoff;
+mod view;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

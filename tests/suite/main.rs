@@ -34,4 +34,5 @@ mod viewer;
 mod viewer_fuzz;
 mod viewer_lost;
 mod viewer_panels;
+mod viewer_scale;
 mod window;
