@@ -52,16 +52,24 @@ impl Variant {
 pub(crate) struct CompositePass {
     photo: Scratch,
     picture: Scratch,
+    /// How often each of the two was drawn or filled.
+    stamps: [u64; 2],
     uniforms: Buffer<Composite>,
 }
 
 impl CompositePass {
     pub fn new(runner: &Runner) -> Result<Self> {
-        Ok(Self { photo: Scratch::default(), picture: Scratch::default(), uniforms: Buffer::new(runner.device(), 1)? })
+        Ok(Self {
+            photo: Scratch::default(),
+            picture: Scratch::default(),
+            stamps: [0; 2],
+            uniforms: Buffer::new(runner.device(), 1)?,
+        })
     }
 
     /// A tile of the photo on the device, to be filled and then composited.
     pub fn photo(&mut self, runner: &Runner, width: u32, height: u32) -> Result<&Texture> {
+        self.stamps[0] += 1;
         self.photo.get(runner.device(), Texel::Rgba, width, height)
     }
 
@@ -81,8 +89,14 @@ impl CompositePass {
         self.picture.current().ok_or_else(|| Error::Gl("nothing is drawn".into()))
     }
 
+    /// What tells the photo, and what was last drawn, from any others before.
+    pub fn stamps(&self) -> [u64; 2] {
+        self.stamps
+    }
+
     /// The tile that [`CompositePass::photo`] holds, with its glare.
     pub fn draw(&mut self, runner: &Runner, variant: Variant, settings: &Composite) -> Result<&Texture> {
+        self.stamps[1] += 1;
         let photo = self.loaded()?;
         photo.bind(PHOTO);
         let (width, height) = (photo.level_width(0), photo.level_height(0));
@@ -99,6 +113,7 @@ impl CompositePass {
     ) -> Result<&Texture> {
         let mut defines = variant.defines();
         defines.push(("GLARE_ALONE", "1"));
+        self.stamps[1] += 1;
         Self::run(&mut self.picture, &mut self.uniforms, runner, &defines, settings, size)
     }
 

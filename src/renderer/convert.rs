@@ -47,12 +47,16 @@ fn one_kind(plan: &Plan) -> Option<&Bell> {
 
 /// The composite that the settings ask for.
 pub(super) fn variant(source: Source, settings: &Settings) -> Variant {
-    let normalize = match settings.normalize {
+    Variant { source, normalize: normalize(settings), take_light: settings.light_gain != [1.0; 3] }
+}
+
+/// How values become glare, by its number in `shared/normalized.glsl`.
+pub(super) fn normalize(settings: &Settings) -> &'static str {
+    match settings.normalize {
         Normalize::None => "0",
         Normalize::Clamp => "1",
         Normalize::Minmax => "2",
-    };
-    Variant { source, normalize, take_light: settings.light_gain != [1.0; 3] }
+    }
 }
 
 /// The members of a group, as the spectrum takes them.

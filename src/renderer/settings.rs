@@ -28,3 +28,11 @@ impl Default for Settings {
         }
     }
 }
+
+impl Settings {
+    /// Whether a mean of the picture's pixels is the photo's mean and what the field's mean becomes: a view of the
+    /// picture made smaller needs no picture then.
+    pub fn is_affine(&self) -> bool {
+        self.normalize != Normalize::Clamp && self.light_gain == [1.0; 3]
+    }
+}
