@@ -58,6 +58,8 @@ struct Made {
     /// The look of the field, as it was planned for.
     look: Option<Look>,
     picture: Option<(Settings, Shows)>,
+    /// The light of the photo's bright pixels, for a threshold.
+    bright: Option<(f64, [f64; 3])>,
     /// Whether that picture was drawn; a view can often do without.
     drawn: bool,
     /// A look that there is no picture of, and why.
@@ -148,7 +150,11 @@ impl Stage {
             self.made.scene = Some(look.gather_from(Some(document.found.clone())));
         }
         let Some(scene) = &self.made.scene else { return Ok(()) };
-        let (settings, _) = job::settings(look, &document.photo, scene)?;
+        let bright = &mut self.made.bright;
+        let (settings, _) = job::settings(look, &document.photo, scene, |threshold| match *bright {
+            Some((known, light)) if known == threshold => light,
+            _ => bright.insert((threshold, job::bright_light(&document.photo, threshold))).1,
+        })?;
         if work >= Work::Plan {
             self.update_field(document, look)?;
         }
