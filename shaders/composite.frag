@@ -5,6 +5,7 @@
 layout(binding = UNIT_PHOTO) uniform sampler2D photo;
 layout(std140, binding = BINDING_PASS) uniform Pass {
     vec4 scale;      // the field's unit, RGB
+    vec4 constant;   // what is subtracted from the field, RGB
     vec4 light_gain; // what a light keeps of itself, RGB; 1 unless light is taken from the photo
     vec4 luminance;  // weights of R, G, B; w: the luminance from which on a pixel is a light
     float strength;
@@ -16,7 +17,7 @@ layout(location = 0) out vec4 picture;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec3 added = strength * normalized(scale.rgb * glare(pixel), flat_span);
+    vec3 added = strength * normalized(scale.rgb * glare(pixel) - constant.rgb, flat_span);
 #ifdef GLARE_ALONE
     picture = vec4(added, 1.0);
 #else

@@ -18,12 +18,14 @@ layout(std140, binding = BINDING_PASS) uniform Pass {
     float gain;      // of the light
     vec3 scale;      // the field's unit, RGB
     float strength;  // of the glare
+    vec3 constant;   // what is subtracted from the field, RGB
+    float flat_span; // a range of the field no wider than this is rounding
     vec2 size;       // of the photo
     vec2 corner;     // of the means on the screen, where the photo is made smaller
     float wipe;      // columns of the screen from this one on show the picture, those before it the photo
-    float flat_span; // a range of the field no wider than this is rounding
     int means;       // not 0: the textures hold means, a texel a pixel of the screen
-    int pad;
+    int pad0;
+    int pad1;
 };
 layout(location = 0) out vec4 shown;
 
@@ -32,7 +34,7 @@ vec3 light_at(bool before, ivec2 texel) {
 #if defined(BEFORE)
     vec3 light = texelFetch(photo, texel, 0).rgb;
 #elif defined(MIXED)
-    vec3 light = strength * normalized(scale * texelFetch(field, texel, 0).rgb, flat_span);
+    vec3 light = strength * normalized(scale * texelFetch(field, texel, 0).rgb - constant, flat_span);
 #ifndef GLARE_ALONE
     light += texelFetch(photo, texel, 0).rgb;
 #endif

@@ -14,6 +14,8 @@ use crate::{Error, Result};
 pub(crate) struct Composite {
     /// The field's unit, RGB.
     pub scale: [f32; 4],
+    /// What is subtracted from the field, RGB.
+    pub constant: [f32; 4],
     /// What a light keeps of itself, RGB.
     pub light_gain: [f32; 4],
     /// Weights of R, G, B in luminance, then the luminance from which on a pixel is a light.
@@ -24,7 +26,7 @@ pub(crate) struct Composite {
     pub flat: f32,
     pub pad: [f32; 2],
 }
-const _: () = assert!(size_of::<Composite>() == 64);
+const _: () = assert!(size_of::<Composite>() == 80);
 
 /// What the composite's shader is specialised with: what it leaves out costs nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

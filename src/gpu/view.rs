@@ -30,19 +30,21 @@ pub(crate) struct View {
     pub scale: [f32; 3],
     /// What the normalised glare is multiplied by.
     pub strength: f32,
+    /// What is subtracted from the field, RGB.
+    pub constant: [f32; 3],
+    /// A range of the field's values that is no wider is rounding.
+    pub flat: f32,
     /// The photo's sides; set by the pass.
     pub size: [f32; 2],
     /// The region's corner on the screen; set by the pass.
     pub corner: [f32; 2],
     /// Columns of the screen from this one on show the picture, those before it the photo.
     pub wipe: f32,
-    /// A range of the field's values that is no wider is rounding.
-    pub flat: f32,
     /// Whether the textures hold means; set by the pass.
     pub means: u32,
-    pub pad: u32,
+    pub pad: [u32; 2],
 }
-const _: () = assert!(size_of::<View>() == 128);
+const _: () = assert!(size_of::<View>() == 144);
 
 /// A texture and what tells its content from any other before.
 pub(crate) type Layer<'a> = (&'a Texture, u64);

@@ -127,9 +127,14 @@ impl Renderer {
             defines.extend([("MIXED", "1"), ("NORMALIZE", convert::normalize(settings))]);
             defines.extend((part == Part::Glare).then_some(("GLARE_ALONE", "1")));
         }
-        let [red, green, blue, _] = composite.scale;
-        let (strength, flat) = (composite.strength, composite.flat);
-        let uniforms = Uniforms { scale: [red, green, blue], strength, flat, ..view.uniforms(region) };
+        let rgb = |[red, green, blue, _]: [f32; 4]| [red, green, blue];
+        let uniforms = Uniforms {
+            scale: rgb(composite.scale),
+            constant: rgb(composite.constant),
+            strength: composite.strength,
+            flat: composite.flat,
+            ..view.uniforms(region)
+        };
         self.view.draw(&self.runner, &layers, &defines, &uniforms, &view.place(region), (screen, region))
     }
 
@@ -145,6 +150,13 @@ impl Renderer {
     /// Of a plan without a series it means nothing.
     pub(crate) fn spectrum_terms(&self) -> Vec<[f32; 4]> {
         self.spectrum.read()
+    }
+
+    /// The constant term of the field's series, RGB: its mean over a period. None where the plan has no series.
+    pub fn constant_term(&self) -> Option<[f64; 3]> {
+        let (_, plan) = self.scene.as_ref().filter(|(_, plan)| plan.terms > 0)?;
+        let terms = self.spectrum.read();
+        Some([0, 1, 2].map(|colour| f64::from(terms[colour][0]) * plan.scale[colour]))
     }
 
     /// The device that it renders on.

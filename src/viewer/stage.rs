@@ -60,6 +60,8 @@ struct Made {
     picture: Option<(Settings, Shows)>,
     /// The light of the photo's bright pixels, for a threshold.
     bright: Option<(f64, [f64; 3])>,
+    /// The constant term of the spectrum that is there, once it was asked for.
+    constant: Option<[f64; 3]>,
     /// Whether that picture was drawn; a view can often do without.
     drawn: bool,
     /// A look that there is no picture of, and why.
@@ -151,7 +153,7 @@ impl Stage {
         }
         let Some(scene) = &self.made.scene else { return Ok(()) };
         let bright = &mut self.made.bright;
-        let (settings, _) = job::settings(look, &document.photo, scene, |threshold| match *bright {
+        let (mut settings, _) = job::settings(look, &document.photo, scene, |threshold| match *bright {
             Some((known, light)) if known == threshold => light,
             _ => bright.insert((threshold, job::bright_light(&document.photo, threshold))).1,
         })?;
@@ -159,6 +161,10 @@ impl Stage {
             self.update_field(document, look)?;
         }
         self.made.look = Some(look.clone());
+        if document.viewing.without_constant {
+            let constant = &mut self.made.constant;
+            settings.constant = *constant.get_or_insert_with(|| self.renderer.constant_term().unwrap_or_default());
+        }
         if self.made.picture == Some((settings, shows)) {
             return Ok(());
         }
@@ -196,6 +202,7 @@ impl Stage {
         self.renderer.set_scene(&scene.ghosts, &planned.plan)?;
         self.times.spectrum = self.elapsed(started);
         self.counts.spectra += 1;
+        self.made.constant = None;
         self.plan = Some(planned.plan);
         self.made.picture = None;
         Ok(())
