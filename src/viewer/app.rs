@@ -18,6 +18,7 @@ use super::shortcuts::{self, Command};
 use super::stage::{Counts, Stage, Times};
 use super::study::Study;
 use super::task::{State, Task};
+use super::timings::Timings;
 use super::{control, panels, viewing};
 use crate::Result;
 use crate::gpu::paint::Painter;
@@ -28,7 +29,7 @@ use crate::scene::{FindOptions, Found};
 use files::Files;
 pub(super) use files::LookFile;
 
-/// Milliseconds of plan, spectrum and composite from which on a drag is shown by previews.
+/// Milliseconds of plan, spectrum, composite and view from which on a drag is shown by previews.
 const SLOW: f64 = 33.0;
 /// For how long nothing must change before a preview is replaced while the pointer still holds on, in seconds.
 const SETTLED: f64 = 0.3;
@@ -167,6 +168,11 @@ impl App {
         self.devices
     }
 
+    /// How long the last pictures took.
+    pub fn timings(&self) -> &Timings {
+        self.stage.timings()
+    }
+
     /// The plan of the picture.
     pub fn plan(&self) -> Option<&Plan> {
         self.stage.plan()
@@ -298,12 +304,12 @@ impl App {
         let done = self.stage.counts();
         let problem = self.stage.problem().is_some();
         self.stage.update(*number, document, preview)?;
-        if !preview && self.stage.counts().spectra > done.spectra {
-            let times = self.stage.times();
-            self.cost = times.plan + times.spectrum + times.composite;
-        }
         let surround = opaque(self.context.global_style().visuals.extreme_bg_color);
         self.stage.show(document, &placement, surround, screen)?;
+        if !preview && self.stage.counts().spectra > done.spectra {
+            let times = self.stage.times();
+            self.cost = times.plan + times.spectrum + times.composite + times.view;
+        }
         let mut again = if preview { Duration::from_secs_f64(SETTLED - still) } else { Duration::MAX };
         if problem != self.stage.problem().is_some() {
             again = Duration::ZERO;
@@ -320,7 +326,7 @@ impl App {
         if let Some(loupe) = self.canvas.loupe {
             self.stage.magnify(document, loupe.center, loupe.side, loupe.before, screen, loupe.region)?;
             let [column, row] = loupe.pixel;
-            let probe = self.stage.pixel(column, row);
+            let probe = self.stage.pixel(document, column, row)?;
             let probe = probe.map(|[photo, picture]| Probe { pixel: loupe.pixel, photo, picture });
             if probe != self.probe {
                 // The numbers are known once the picture is; the next frame shows them.

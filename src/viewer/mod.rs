@@ -53,5 +53,6 @@ pub use loader::Wake;
 pub use stage::{Counts, Times};
 pub use status::Status;
 pub use study::{Cut, CutPoint, Degree, Plot, Study, Wanted};
+pub use timings::Timings;
 pub use viewing::{Placement, Shows, Viewing, Zoom};
 pub use window::{Harness, run};

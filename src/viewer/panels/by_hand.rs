@@ -24,6 +24,7 @@ pub fn show(ui: &mut Ui, document: &mut Document, stage: &Stage) {
         evaluator(ui, document);
         degree(ui, document, stage);
         period(ui, document, stage);
+        constant(ui, document, stage);
     });
     ui.data_mut(|data| data.insert_temp(place("By hand"), shown.header_response.rect));
 }
@@ -73,4 +74,15 @@ fn period(ui: &mut Ui, document: &mut Document, stage: &Stage) {
             }
         }
     });
+}
+
+fn constant(ui: &mut Ui, document: &mut Document, stage: &Stage) {
+    let series = stage.plan().is_some_and(|plan| plan.terms > 0);
+    let mut seen = !document.viewing.without_constant;
+    let tip = "Whether the series' constant term is seen: the field's mean over a period. Of the view only; stretched \
+               values are the same without it";
+    let check = ui.add_enabled(series, egui::Checkbox::new(&mut seen, "Constant term (DC)"));
+    if check.on_hover_text(tip).on_disabled_hover_text("The plan has no series").changed() {
+        document.viewing.without_constant = !seen;
+    }
 }
