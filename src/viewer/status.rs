@@ -50,6 +50,8 @@ pub struct Status {
     pub devices: u32,
     /// How often each kind of work has been done, on the last of them.
     pub counts: Counts,
+    /// The screen's pixels in a point.
+    pub scale: f32,
     /// Where the lights are on the screen, in pixels from its top left.
     pub lights_at: Vec<[f32; 2]>,
     /// Left, top, right and bottom of the controls, in pixels.
@@ -81,6 +83,7 @@ impl Status {
             notices: app.notices().to_vec(),
             devices: app.devices(),
             counts: app.counts(),
+            scale,
             lights_at: lights.iter().filter_map(|light| at(light.position)).map(pixels).collect(),
             controls: NAMES.into_iter().filter_map(control).collect(),
         }

@@ -25,6 +25,9 @@ const MOVING: Duration = Duration::from_millis(100);
 #[derive(Debug, Clone, Copy)]
 struct Wanted;
 
+/// How much of a display the window may take when it opens: there are frames and bars as well.
+const PART: f64 = 0.95;
+
 /// What a test asks of the window.
 #[derive(Debug, Clone, Default)]
 pub struct Harness {
@@ -105,12 +108,9 @@ impl Start {
     fn open(self, event_loop: &ActiveEventLoop) -> Result<Open> {
         // Without a home nothing is remembered.
         let state = State::of_user().ok();
-        let [width, height] = state.as_ref().and_then(State::size).unwrap_or([1280, 800]);
+        let size = fitting(event_loop, state.as_ref().and_then(State::size).unwrap_or([1280, 800]));
         // Shown with its first frame, so that nothing flashes.
-        let attributes = Window::default_attributes()
-            .with_title("vglare")
-            .with_inner_size(LogicalSize::new(width, height))
-            .with_visible(false);
+        let attributes = Window::default_attributes().with_title("vglare").with_inner_size(size).with_visible(false);
         let (device, surface) = self.display.window(event_loop, attributes)?;
         surface.set_vsync(true);
         let proxy = self.proxy;
@@ -149,6 +149,18 @@ impl Start {
             surface,
         })
     }
+}
+
+/// A size in points, or what of it fits onto the largest display.
+fn fitting(event_loop: &ActiveEventLoop, [width, height]: [u32; 2]) -> LogicalSize<f64> {
+    let displays = event_loop.available_monitors().map(|display| display.size().to_logical(display.scale_factor()));
+    let largest = displays.reduce(|a: LogicalSize<f64>, b| if a.width * a.height < b.width * b.height { b } else { a });
+    // Some displays do not say how large they are.
+    let most = |most: Option<f64>| most.filter(|&most| most > 0.0).map_or(f64::INFINITY, |most| PART * most);
+    LogicalSize::new(
+        f64::from(width).min(most(largest.map(|size| size.width))),
+        f64::from(height).min(most(largest.map(|size| size.height))),
+    )
 }
 
 impl Open {
