@@ -172,6 +172,16 @@ impl Open {
         let _ = self.state.as_ref().map(|state| state.keep_size([size.width, size.height]));
     }
 
+    /// Closes the window, unless something is to be said before.
+    fn close(&mut self, event_loop: &ActiveEventLoop) {
+        if self.app.may_close() {
+            self.keep();
+            event_loop.exit();
+        } else {
+            self.surface.window().request_redraw();
+        }
+    }
+
     /// Keeps what is shown, once nothing moves and where it has changed.
     fn keep_status(&mut self, rest: Duration) -> Result<()> {
         let Some(path) = self.harness.status.as_ref().filter(|_| rest > MOVING) else { return Ok(()) };
@@ -259,10 +269,7 @@ impl Viewer {
     fn redraw(&mut self, event_loop: &ActiveEventLoop) {
         let Some(open) = &mut self.open else { return };
         match open.frame() {
-            Ok(Next::Close) => {
-                open.keep();
-                event_loop.exit();
-            }
+            Ok(Next::Close) => open.close(event_loop),
             Ok(Next::Event) => event_loop.set_control_flow(ControlFlow::Wait),
             Ok(Next::Frame(due)) if due.saturating_duration_since(Instant::now()) < Duration::from_millis(1) => {
                 open.surface.window().request_redraw();
@@ -316,10 +323,7 @@ impl ApplicationHandler<Wanted> for Viewer {
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         let Some(open) = &mut self.open else { return };
         match event {
-            WindowEvent::CloseRequested => {
-                open.keep();
-                event_loop.exit();
-            }
+            WindowEvent::CloseRequested => open.close(event_loop),
             WindowEvent::RedrawRequested => self.redraw(event_loop),
             WindowEvent::Occluded(occluded) => {
                 open.occluded = occluded;

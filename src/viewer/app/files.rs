@@ -1,7 +1,7 @@
 //! What the window does with files: looks and pictures in and out, and what it remembers.
 
 use std::path::{Path, PathBuf};
-use std::time::{Duration, SystemTime};
+use std::time::{Duration, Instant, SystemTime};
 
 use egui::{CentralPanel, Key, Modifiers, Panel, ProgressBar, Response, Ui};
 
@@ -20,6 +20,10 @@ const LOOK_AGAIN: Duration = Duration::from_secs(2);
 
 /// How often a look is remembered while a gesture goes on, in seconds.
 const KEEP_AGAIN: f64 = 2.0;
+
+/// What is said to who closes the window too soon, and for how long what they then call off may take to end.
+const STILL_WRITING: &str = "a picture is still being written; close again to call it off";
+const GRACE: Duration = Duration::from_secs(2);
 
 /// What the window knows of files besides the photos.
 #[derive(Default)]
@@ -69,6 +73,24 @@ impl App {
     /// Whether pictures are being written.
     pub fn is_writing(&self) -> bool {
         !self.files.exports.is_empty()
+    }
+
+    /// Whether the window may close. While pictures are being written it has to be asked twice, which calls them off.
+    pub fn may_close(&mut self) -> bool {
+        if !self.is_writing() {
+            return true;
+        }
+        if !self.notices.iter().any(|notice| notice == STILL_WRITING) {
+            self.notice(STILL_WRITING.into());
+            return false;
+        }
+        self.files.exports.iter().for_each(Export::cancel);
+        // What is in the middle of being written takes its temporary file along.
+        let until = Instant::now() + GRACE;
+        while Instant::now() < until && self.files.exports.iter().any(|export| export.poll().is_none()) {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        true
     }
 
     /// Takes the look of a scene file for the document that is shown. Where it cannot be read, the look stays.
@@ -152,6 +174,9 @@ impl App {
                 false
             }
         });
+        if self.files.exports.is_empty() {
+            self.notices.retain(|notice| notice != STILL_WRITING);
+        }
         for (path, result) in ended {
             match result {
                 Ok(warnings) => {

@@ -126,6 +126,22 @@ fn a_picture_that_is_called_off_never_appears() {
 }
 
 #[test]
+fn a_window_that_closes_while_it_writes_is_asked_twice() {
+    let (folder, mut session) = in_a_folder();
+    assert!(session.app.may_close());
+    session.app.export(Subject::Picture, &folder.path().join("picture.exr"));
+    assert!(!session.app.may_close() && session.app.notices()[0].contains("still being written"));
+    session.wait(|app| !app.is_writing());
+    assert!(session.app.notices().is_empty() && session.app.may_close());
+    session.app.export(Subject::Picture, &folder.path().join("again.exr"));
+    assert!(!session.app.may_close() && session.app.may_close());
+    let names = std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name());
+    let left: Vec<_> =
+        names.filter(|name| !["lamp.exr", "picture.exr", "state"].iter().any(|known| name == known)).collect();
+    assert!(left.is_empty(), "{left:?}");
+}
+
+#[test]
 fn two_presses_in_one_frame_undo_two_steps() {
     let (_folder, mut session) = in_a_folder();
     for strength in [2.0, 3.0] {
