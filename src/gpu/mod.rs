@@ -14,7 +14,7 @@
 //! | `coefficients` | samples of any function → its coefficients |
 //! | `lines` | curves as line strips |
 //! | `copy` | the yardstick of the bench |
-//! | `screen`, `view`, `paint` | where the viewer draws; the picture as a display shows it; egui's shapes |
+//! | `screen`, `view`, `mask`, `paint` | where the viewer draws; the picture as a display shows it; what is light; egui's shapes |
 //! | `precision` | how exact the driver's sin, cos and exp are, and vglare's phases |
 
 pub(crate) mod coefficients;
@@ -27,6 +27,7 @@ pub(crate) mod graf;
 mod harmonics;
 pub(crate) mod layout;
 pub(crate) mod lines;
+pub(crate) mod mask;
 pub(crate) mod paint;
 pub(crate) mod pixels;
 pub mod precision;

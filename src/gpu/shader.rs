@@ -51,6 +51,7 @@ const SOURCES: &[(&str, &str)] = &sources![
     "lattice.frag",
     "lines.frag",
     "lines.vert",
+    "mask.frag",
     "precision.comp",
     "probe.frag",
     "profiles.frag",
