@@ -9,6 +9,7 @@ use std::time::Duration;
 use egui::{Align, CentralPanel, Color32, Key, Layout, Modifiers, Panel, RawInput, RichText, Ui};
 
 use super::canvas::{self, Canvas, Probe};
+use super::control::{self, Told};
 use super::document::Document;
 use super::loader::{Loader, Wake};
 use super::model::{Look, Work, work};
@@ -16,7 +17,7 @@ use super::shortcuts::{self, Command};
 use super::stage::{Counts, Stage, Times};
 use super::study::Study;
 use super::task::{State, Task};
-use super::{control, panels, viewing};
+use super::{panels, viewing};
 use crate::Result;
 use crate::gpu::paint::Painter;
 use crate::gpu::{Device, Screen};
@@ -168,10 +169,15 @@ impl App {
         self.stage.known()
     }
 
-    /// Where the slider of the control called `name`, or the header of the panel called so, was drawn last, in points,
-    /// for scripts to drag and click.
+    /// What the panels' controls said of themselves in the last frame, those that were folded away left out.
+    pub fn controls(&self) -> Vec<Told> {
+        control::told(&self.context)
+    }
+
+    /// Where the control called `name`, of a number its slider, or the header of the panel called so, was drawn last, in
+    /// points, for scripts to drag and click.
     pub fn control(&self, name: &str) -> Option<egui::Rect> {
-        self.context.data(|data| data.get_temp(control::place(name)))
+        self.controls().into_iter().find(|told| told.name == name).map(|told| told.part)
     }
 
     /// egui's side of it.
@@ -204,6 +210,7 @@ impl App {
             self.ui(ui, screen);
         });
         self.settle(before);
+        self.remember_theme();
         screen.clear(opaque(context.global_style().visuals.extreme_bg_color));
         let again = self.draw(screen).unwrap_or_else(|error| {
             let told = self.notices.len();
@@ -293,6 +300,9 @@ impl App {
         }
         let surround = opaque(self.context.global_style().visuals.extreme_bg_color);
         self.stage.show(document, &placement, surround, screen)?;
+        if document.viewing.mask || document.sets_threshold {
+            self.stage.mask(document, &placement, screen)?;
+        }
         let mut again = if preview { Duration::from_secs_f64(SETTLED - still) } else { Duration::MAX };
         if problem != self.stage.problem().is_some() {
             again = Duration::ZERO;
@@ -323,6 +333,7 @@ impl App {
     fn ui(&mut self, ui: &mut Ui, screen: &Screen) {
         let dropped = ui.input(|input| input.raw.dropped_files.clone());
         dropped.iter().for_each(|file| self.open(file.path().to_owned()));
+        control::begin(ui.ctx());
         self.bar(ui);
         self.tabs(ui);
         self.strips(ui);
@@ -335,7 +346,7 @@ impl App {
         };
         let placement = self.canvas.placement.as_ref();
         let command = if asks { None } else { shortcuts::apply(ui.ctx(), document, placement) };
-        Panel::right("panels").default_size(300.0).show(ui, |ui| panels::show(ui, document, &self.stage));
+        Panel::right("panels").default_size(320.0).show(ui, |ui| panels::show(ui, document, &self.stage));
         let canvas = CentralPanel::no_frame()
             .show(ui, |ui| canvas::show(ui, document, &self.stage, screen.size(), self.probe.as_ref()));
         self.canvas = canvas.inner;

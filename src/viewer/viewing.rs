@@ -49,6 +49,8 @@ pub struct Viewing {
     pub handles: bool,
     /// Whether a loupe is at the pointer.
     pub loupe: bool,
+    /// Whether the pixels that are light are marked.
+    pub mask: bool,
     /// What is to be found out while it rests.
     pub wanted: Wanted,
 }
@@ -63,6 +65,7 @@ impl Default for Viewing {
             wipe: None,
             handles: true,
             loupe: false,
+            mask: false,
             wanted: Wanted::default(),
         }
     }

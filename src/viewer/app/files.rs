@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-use egui::{CentralPanel, Key, Modifiers, Panel, Ui};
+use egui::{CentralPanel, Key, Modifiers, Panel, ThemePreference, Ui};
 
 use super::App;
 use crate::Result;
@@ -11,7 +11,7 @@ use crate::scene::{read_scene, write_scene};
 use crate::viewer::ask::{Answer, Ask, Purpose};
 use crate::viewer::document::Document;
 use crate::viewer::export::{Export, Subject};
-use crate::viewer::model::{Look, State, command_line};
+use crate::viewer::model::{Look, State, Theme, command_line};
 
 /// How often the file of a look is looked at while nothing else happens.
 const LOOK_AGAIN: Duration = Duration::from_secs(2);
@@ -27,6 +27,8 @@ pub struct Files {
     last: Option<Look>,
     kept: Option<Look>,
     recent: Vec<PathBuf>,
+    /// The theme as it is remembered.
+    theme: Option<Theme>,
 }
 
 /// The scene file that a look was read from or written to last.
@@ -51,6 +53,10 @@ impl App {
             Err(error) => self.notice(error.to_string()),
         }
         self.files.recent = state.recent().unwrap_or_default();
+        if let Some(theme) = state.theme() {
+            self.context.set_theme(preference(theme));
+        }
+        self.files.theme = Some(self.theme());
         self.files.state = Some(state);
     }
 
@@ -122,6 +128,24 @@ impl App {
         }
         self.files.kept = Some(document.look.clone());
         if let Err(error) = state.keep_look(&document.look) {
+            self.notice(error.to_string());
+        }
+    }
+
+    fn theme(&self) -> Theme {
+        match self.context.options(|options| options.theme_preference) {
+            ThemePreference::System => Theme::System,
+            ThemePreference::Light => Theme::Light,
+            ThemePreference::Dark => Theme::Dark,
+        }
+    }
+
+    /// Remembers the theme, where it was changed.
+    pub(super) fn remember_theme(&mut self) {
+        let theme = self.theme();
+        let Some(state) = self.files.state.as_ref().filter(|_| self.files.theme != Some(theme)) else { return };
+        self.files.theme = Some(theme);
+        if let Err(error) = state.keep_theme(theme) {
             self.notice(error.to_string());
         }
     }
@@ -314,6 +338,14 @@ fn command(document: &Document) -> Result<String> {
     let file = document.file.as_ref().filter(|file| file.look == document.look);
     let output = likely(document, Purpose::SavePicture);
     command_line(&document.look, &document.path, &output, file.map(|file| file.path.as_path()))
+}
+
+fn preference(theme: Theme) -> ThemePreference {
+    match theme {
+        Theme::System => ThemePreference::System,
+        Theme::Light => ThemePreference::Light,
+        Theme::Dark => ThemePreference::Dark,
+    }
 }
 
 fn modified(path: &Path) -> Option<SystemTime> {

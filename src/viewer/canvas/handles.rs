@@ -47,7 +47,7 @@ fn light(ui: &mut Ui, painter: &Painter, document: &mut Document, placement: &Pl
     let at = placement.to_screen(document.place(document.lights()[index].position));
     let response = handle(ui, placement, at, index);
     if response.clicked() || response.drag_started() {
-        document.selected = Some(index);
+        document.select(index);
     }
     if let Some(moved) = moved(&response, placement, document.frame.pixel_size()) {
         document.lights_mut()[index].position += moved;

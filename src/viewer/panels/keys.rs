@@ -2,6 +2,7 @@
 
 use egui::{Grid, Ui};
 
+use crate::viewer::control::hint;
 use crate::viewer::document::Document;
 use crate::viewer::shortcuts::KEYS;
 use crate::viewer::stage::Stage;
@@ -15,4 +16,5 @@ pub fn show(ui: &mut Ui, _: &mut Document, _: &Stage) {
             ui.end_row();
         }
     });
+    hint(ui, "Tab leads to the next control; Enter on a control's name puts it back.");
 }
