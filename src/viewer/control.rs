@@ -32,6 +32,14 @@ pub struct Told {
     pub part: Rect,
 }
 
+impl Told {
+    /// What only does something.
+    fn act(name: String, about: &str, rect: Rect) -> Self {
+        let (about, span, reset) = (about.to_owned(), String::new(), String::new());
+        Self { name, about, span, reset, label: rect, rect, part: rect }
+    }
+}
+
 fn told_id() -> Id {
     Id::unique("told controls")
 }
@@ -232,10 +240,7 @@ pub fn choice<T: Copy + PartialEq>(
         let list = ComboBox::from_id_salt(name).selected_text(called(*value));
         list.show_ui(ui, |ui| {
             for (choice, name, meaning) in choices {
-                let item = ui.selectable_value(value, *choice, *name);
-                if !meaning.is_empty() {
-                    item.on_hover_text(*meaning);
-                }
+                item_of(ui, name, meaning, |ui| ui.selectable_value(value, *choice, *name));
             }
         })
         .response
@@ -262,7 +267,12 @@ pub fn buttons<T: Copy + PartialEq>(
     let tip = Tip { name, about, span: meanings.join("\n"), reset: called.into() };
     let row = tip.row(ui, |ui| {
         let shown = ui.horizontal_wrapped(|ui| {
-            let buttons = choices.iter().map(|(choice, name, _)| ui.selectable_value(value, *choice, *name));
+            let buttons = choices.iter().map(|(choice, name, meaning)| {
+                let button = ui.selectable_value(value, *choice, *name);
+                // The row's tooltip explains them all.
+                tell(ui, Told::act(format!("choose {name}"), meaning, button.rect));
+                button
+            });
             buttons.reduce(|all, button| all | button)
         });
         shown.inner.unwrap_or(shown.response)
@@ -290,11 +300,14 @@ pub fn button(ui: &mut Ui, text: &str, about: &str) -> bool {
 /// Something to be done, of one of many: `name` tells which.
 pub fn done_by(ui: &mut Ui, name: String, about: &str, control: impl FnOnce(&mut Ui) -> Response) -> bool {
     let response = control(ui);
-    let (rect, clicked) = (response.rect, response.clicked());
-    response.on_hover_text(about);
-    let (about, span, reset) = (about.to_owned(), String::new(), String::new());
-    tell(ui, Told { name, about, span, reset, label: rect, rect, part: rect });
-    clicked
+    tell(ui, Told::act(name, about, response.rect));
+    response.on_hover_text(about).clicked()
+}
+
+/// One of what a list that is open holds; scripts find it as `choose` and its name. Whether it was chosen.
+pub fn item_of(ui: &mut Ui, name: &str, about: &str, control: impl FnOnce(&mut Ui) -> Response) -> bool {
+    let about = if about.is_empty() { name } else { about };
+    done_by(ui, format!("choose {name}"), about, control)
 }
 
 /// A part of a panel that is folded away at first.

@@ -6,6 +6,7 @@ use egui::{ComboBox, DragValue, Response, Ui};
 use glam::DVec2;
 
 use crate::series::{Bell, Profile, SineGaussian, VonMises};
+use crate::viewer::control::item_of;
 use crate::viewer::model::Look;
 
 /// What bells there are to choose from in a look.
@@ -61,7 +62,8 @@ impl Bells {
         let mut chosen = None;
         let list = ComboBox::from_id_salt(salt).selected_text(text).show_ui(ui, |ui| {
             for (index, (name, _)) in all.iter().enumerate() {
-                if ui.selectable_label(now == Some(index), name).clicked() && now != Some(index) {
+                let item = |ui: &mut Ui| ui.selectable_label(now == Some(index), name);
+                if item_of(ui, name, "Takes this bell", item) && now != Some(index) {
                     chosen = Some(index);
                 }
             }

@@ -5,7 +5,7 @@ use egui::{ComboBox, Ui};
 use super::{colour, lens};
 use crate::choices::{Mix, Normalize};
 use crate::scene::presets;
-use crate::viewer::control::{Number, Tip, choice};
+use crate::viewer::control::{Number, Tip, choice, item_of};
 use crate::viewer::document::Document;
 use crate::viewer::model::{Look, LookLens};
 use crate::viewer::stage::Stage;
@@ -100,7 +100,7 @@ fn preset(ui: &mut Ui, look: &mut Look, opened: &LookLens) {
                 let Ok(lens) = preset.lens() else { continue };
                 let chosen = matches!(&look.lens, LookLens::Preset(now) if now.name == lens.name);
                 let about = lens.description.clone();
-                if ui.selectable_label(chosen, &lens.name).on_hover_text(about).clicked() {
+                if item_of(ui, &lens.name, &about, |ui| ui.selectable_label(chosen, &lens.name)) {
                     look.lens = LookLens::Preset(lens);
                 }
             }
