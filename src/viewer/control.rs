@@ -135,7 +135,7 @@ pub struct Number {
     pub name: &'static str,
     /// What it does, in a sentence.
     pub about: &'static str,
-    /// Its unit; empty where it has none.
+    /// Its unit, or what it is a part of.
     pub unit: &'static str,
     /// The range that the slider spans; what is typed may not leave it either.
     pub range: RangeInclusive<f64>,
@@ -189,8 +189,7 @@ impl Number {
 
     /// Its range and its unit.
     pub fn span(&self) -> String {
-        let space = if self.unit.is_empty() { "" } else { " " };
-        format!("{} to {}{space}{}", brief(*self.range.start()), brief(*self.range.end()), self.unit)
+        format!("{} to {} {}", brief(*self.range.start()), brief(*self.range.end()), self.unit)
     }
 }
 

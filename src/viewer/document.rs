@@ -49,6 +49,8 @@ pub struct Document {
     pub selected: Option<usize>,
     /// It as it was when it was selected, for its way back.
     light_before: Option<Light>,
+    /// The light that the list of lights is to show next.
+    pub(super) shows_light: Option<usize>,
     /// The ghost of no light that is selected, and it as it was then.
     pub(super) selected_ghost: Option<(usize, Ghost)>,
     /// The lens that its table was made from.
@@ -90,6 +92,7 @@ impl Document {
             viewing: Viewing::default(),
             selected: None,
             light_before: None,
+            shows_light: None,
             selected_ghost: None,
             sets_threshold: false,
         }
@@ -114,6 +117,7 @@ impl Document {
     pub fn select(&mut self, index: usize) {
         self.light_before = self.lights().get(index).copied();
         self.selected = self.light_before.map(|_| index);
+        self.shows_light = self.selected;
         self.selected_ghost = None;
     }
 

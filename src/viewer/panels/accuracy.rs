@@ -12,8 +12,8 @@ use crate::viewer::study::{DECADES, colour};
 
 const TOLERANCES: Number = Number {
     name: "Tolerance",
-    about: "Largest error at any pixel, relative to the largest glare of the same colour.",
-    unit: "",
+    about: "Largest error at any pixel, as a part of the largest glare of the same colour.",
+    unit: "of the largest",
     range: 1e-6..=0.1,
     logarithmic: true,
 };

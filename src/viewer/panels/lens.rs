@@ -26,7 +26,7 @@ const TINT: [Number; 3] = [tint("red"), tint("green"), tint("blue")];
 const SHARE: Number = Number {
     name: "share",
     about: "The part of the light's flux that the ghost carries.",
-    unit: "",
+    unit: "of the flux",
     range: 0.0..=1.0,
     logarithmic: false,
 };
@@ -49,7 +49,7 @@ const fn tint(name: &'static str) -> Number {
     Number {
         name,
         about: "What multiplies this colour of the light.",
-        unit: "",
+        unit: "times",
         range: 0.0..=100.0,
         logarithmic: false,
     }

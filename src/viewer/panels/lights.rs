@@ -1,6 +1,6 @@
 //! What counts as a light, the list of lights, and the one that is selected.
 
-use egui::Ui;
+use egui::{Align, ScrollArea, Ui};
 use glam::DVec2;
 
 use super::{colour, ghosts};
@@ -66,6 +66,9 @@ const fn flux(name: &'static str) -> Number {
     }
 }
 
+/// The most height that the list of lights takes, in points.
+const LIST: f32 = 192.0;
+
 /// Shows the panel.
 pub fn show(ui: &mut Ui, document: &mut Document, _: &Stage) {
     find(ui, document);
@@ -83,11 +86,14 @@ pub fn show(ui: &mut Ui, document: &mut Document, _: &Stage) {
         }
     });
     let mut gone = None;
-    for index in 0..document.lights().len() {
-        if row(ui, document, index) {
-            gone = Some(index);
+    // So many that they would leave no room for the rest have a part of the panel to be scrolled in.
+    ScrollArea::vertical().id_salt("lights").max_height(LIST).show(ui, |ui| {
+        for index in 0..document.lights().len() {
+            if row(ui, document, index) {
+                gone = Some(index);
+            }
         }
-    }
+    });
     if let Some(index) = gone {
         document.delete_light(index);
     }
@@ -116,7 +122,12 @@ fn row(ui: &mut Ui, document: &mut Document, index: usize) -> bool {
         let about = "Selects the light. Its flux is radiance times area, in half picture heights squared";
         let text = format!("Light {number}:  {:.2e}", mean_flux(&light));
         let chosen = document.selected == Some(index);
-        if done_by(ui, format!("light {number}"), about, |ui| ui.selectable_label(chosen, text)) {
+        let label = ui.selectable_label(chosen, text);
+        if document.shows_light == Some(index) {
+            label.scroll_to_me(Some(Align::Center));
+            document.shows_light = None;
+        }
+        if done_by(ui, format!("light {number}"), about, |_| label) {
             document.select(index);
         }
         done_by(ui, format!("delete {number}"), "Deletes the light (Delete)", |ui| ui.small_button("×"))

@@ -12,8 +12,8 @@ use crate::viewer::stage::Stage;
 
 const STRENGTH: Number = Number {
     name: "Strength",
-    about: "What the glare is multiplied by; 1 is the lens's own.",
-    unit: "",
+    about: "What the glare is multiplied by.",
+    unit: "times the lens's own",
     range: 0.0..=10.0,
     logarithmic: true,
 };
@@ -21,7 +21,7 @@ const STRENGTH: Number = Number {
 const SIZE: Number = Number {
     name: "Size",
     about: "What the size of every ghost is multiplied by; its light stays as much as it is.",
-    unit: "",
+    unit: "times",
     range: 0.01..=100.0,
     logarithmic: true,
 };
@@ -45,7 +45,7 @@ const fn tint(name: &'static str) -> Number {
     Number {
         name,
         about: "What this colour of the glare is multiplied by.",
-        unit: "",
+        unit: "times",
         range: 0.0..=4.0,
         logarithmic: false,
     }
