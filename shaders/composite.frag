@@ -1,10 +1,11 @@
 // The photo with its glare. Alpha is left as it is.
 #include EVALUATOR
+#include "shared/normalized.glsl"
 
 layout(binding = UNIT_PHOTO) uniform sampler2D photo;
-layout(binding = UNIT_RANGE) uniform sampler2D range;
 layout(std140, binding = BINDING_PASS) uniform Pass {
     vec4 scale;      // the field's unit, RGB
+    vec4 constant;   // what is subtracted from the field, RGB
     vec4 light_gain; // what a light keeps of itself, RGB; 1 unless light is taken from the photo
     vec4 luminance;  // weights of R, G, B; w: the luminance from which on a pixel is a light
     float strength;
@@ -14,21 +15,9 @@ layout(std140, binding = BINDING_PASS) uniform Pass {
 };
 layout(location = 0) out vec4 picture;
 
-vec3 normalized(vec3 value) {
-#if NORMALIZE == 1
-        return clamp(value, 0.0, 1.0);
-#elif NORMALIZE == 2
-        vec2 ends = texelFetch(range, ivec2(0), 0).xy * vec2(1.0, -1.0); // (min, max)
-        float span = ends.y - ends.x;
-        return span > flat_span ? (value - ends.x) / span : vec3(0.0); // a flat field has no contrast to stretch
-#else
-    return value;
-#endif
-}
-
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec3 added = strength * normalized(scale.rgb * glare(pixel));
+    vec3 added = strength * normalized(scale.rgb * glare(pixel) - constant.rgb, flat_span);
 #ifdef GLARE_ALONE
     picture = vec4(added, 1.0);
 #else

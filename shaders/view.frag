@@ -3,7 +3,12 @@
 #include "shared/tone.glsl"
 
 layout(binding = UNIT_PHOTO) uniform sampler2D photo;
+#ifdef MIXED
+#include "shared/normalized.glsl"
+layout(binding = UNIT_FIELD) uniform sampler2D field;
+#else
 layout(binding = UNIT_PICTURE) uniform sampler2D picture;
+#endif
 layout(std140, binding = BINDING_PASS) uniform Pass {
     mat3 gamut;      // from the photo's primaries to Rec.709's
     vec2 origin;     // of the screen's top left corner, in the photo's pixels
@@ -11,58 +16,45 @@ layout(std140, binding = BINDING_PASS) uniform Pass {
     float rows;      // of the screen
     vec3 surround;   // as shown
     float gain;      // of the light
+    vec3 scale;      // the field's unit, RGB
+    float strength;  // of the glare
+    vec3 constant;   // what is subtracted from the field, RGB
+    float flat_span; // a range of the field no wider than this is rounding
+    vec2 size;       // of the photo
+    vec2 corner;     // of the means on the screen, where the photo is made smaller
     float wipe;      // columns of the screen from this one on show the picture, those before it the photo
-    int stride;      // rows and columns from one that is looked at to the next, where it is made smaller
+    int means;       // not 0: the textures hold means, a texel a pixel of the screen
     int pad0;
     int pad1;
 };
 layout(location = 0) out vec4 shown;
 
-vec3 texel(bool before, ivec2 at) {
-#ifdef WIPE
-    return before ? texelFetch(photo, at, 0).rgb : texelFetch(picture, at, 0).rgb;
+// The light at a texel: of the photo before it got its glare, or after.
+vec3 light_at(bool before, ivec2 texel) {
+#if defined(BEFORE)
+    vec3 light = texelFetch(photo, texel, 0).rgb;
+#elif defined(MIXED)
+    vec3 light = strength * normalized(scale * texelFetch(field, texel, 0).rgb - constant, flat_span);
+#ifndef GLARE_ALONE
+    light += texelFetch(photo, texel, 0).rgb;
+#endif
 #else
-    return texelFetch(picture, at, 0).rgb;
+    vec3 light = texelFetch(picture, texel, 0).rgb;
 #endif
-}
-
-#ifdef TAPS
-// The mean of the light that falls on a pixel of the screen: TAPS rows and columns of the photo hold all of it.
-vec3 mean(bool before, vec2 center, ivec2 last) {
-    vec2 low = max(center - 0.5 * pitch, vec2(0.0));
-    vec2 high = min(center + 0.5 * pitch, vec2(last + 1));
-    ivec2 first = ivec2(low);
-    vec3 sum = vec3(0.0);
-    float weights = 0.0;
-    for (int j = 0; j < TAPS; j++) {
-        for (int i = 0; i < TAPS; i++) {
-            ivec2 at = min(first + stride * ivec2(i, j), last);
-            vec2 from = vec2(first + stride * ivec2(i, j));
-            vec2 side = max(min(from + 1.0, high) - max(from, low), 0.0);
-            float weight = side.x * side.y;
-            // What is not finite must not be weighted by 0.
-            sum += weight > 0.0 ? weight * texel(before, at) : vec3(0.0);
-            weights += weight;
-        }
-    }
-    return sum / weights;
-}
+#ifdef WIPE
+    light = before ? texelFetch(photo, texel, 0).rgb : light;
 #endif
+    return light;
+}
 
 void main() {
     vec2 pixel = vec2(gl_FragCoord.x, rows - gl_FragCoord.y);
     vec2 at = origin + pitch * pixel;
-    ivec2 last = textureSize(picture, 0) - 1;
-    if (any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, vec2(last + 1)))) {
+    if (any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, size))) {
         shown = vec4(surround, 1.0);
         return;
     }
-    bool before = pixel.x < wipe;
-#ifdef TAPS
-    vec3 light = mean(before, at, last);
-#else
-    vec3 light = texel(before, ivec2(at));
-#endif
+    vec3 light = light_at(pixel.x < wipe, ivec2(means != 0 ? pixel - corner : at));
 #ifdef GAMUT
     light = gamut * light;
 #endif

@@ -44,7 +44,7 @@ pub use exchange::Pending;
 pub use graf::{GrafRenderer, GrafScene};
 pub use mask::Mask;
 pub use settings::Settings;
-pub use view::View;
+pub use view::{Part, View};
 
 pub use crate::choices::Normalize;
 
@@ -63,6 +63,8 @@ pub struct Renderer {
     scene: Option<(Vec<Ghost>, Plan)>,
     /// The frame whose field is held, if any.
     held: Option<Frame>,
+    /// The field whose range is on the device, by what tells it from any other.
+    ranged: Option<u64>,
     /// Room for the next scene's ghosts.
     room: Vec<Ghost>,
     tile_pixels: usize,
@@ -88,6 +90,7 @@ impl Renderer {
             exchange: Exchange::new(!device.info().software),
             scene: None,
             held: None,
+            ranged: None,
             room: Vec::new(),
             tile_pixels: tiles::PIXELS,
             runner,
@@ -360,8 +363,16 @@ impl Renderer {
     /// Finds the field's range over the frame's window, and leaves it on the device.
     fn reduce(&mut self, frame: Frame) -> Result<()> {
         let scale = self.plan()?.scale.map(|scale| scale as f32);
+        if let (true, Some((field, stamp))) = (self.held == Some(frame), self.field.drawn()) {
+            if self.ranged != Some(stamp) {
+                self.range.reset();
+                self.range.add(&self.runner, field, scale)?;
+                self.ranged = Some(stamp);
+            }
+            return Ok(());
+        }
         self.range.reset();
-        self.held = None;
+        (self.held, self.ranged) = (None, None);
         for tile in self.tiles(frame.window) {
             let source = self.evaluate(frame, tile)?;
             let field = self.field.draw(&self.runner, source, tile.width, tile.height)?;

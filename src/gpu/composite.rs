@@ -14,6 +14,8 @@ use crate::{Error, Result};
 pub(crate) struct Composite {
     /// The field's unit, RGB.
     pub scale: [f32; 4],
+    /// What is subtracted from the field, RGB.
+    pub constant: [f32; 4],
     /// What a light keeps of itself, RGB.
     pub light_gain: [f32; 4],
     /// Weights of R, G, B in luminance, then the luminance from which on a pixel is a light.
@@ -24,7 +26,7 @@ pub(crate) struct Composite {
     pub flat: f32,
     pub pad: [f32; 2],
 }
-const _: () = assert!(size_of::<Composite>() == 64);
+const _: () = assert!(size_of::<Composite>() == 80);
 
 /// What the composite's shader is specialised with: what it leaves out costs nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,16 +54,24 @@ impl Variant {
 pub(crate) struct CompositePass {
     photo: Scratch,
     picture: Scratch,
+    /// How often each of the two was drawn or filled.
+    stamps: [u64; 2],
     uniforms: Buffer<Composite>,
 }
 
 impl CompositePass {
     pub fn new(runner: &Runner) -> Result<Self> {
-        Ok(Self { photo: Scratch::default(), picture: Scratch::default(), uniforms: Buffer::new(runner.device(), 1)? })
+        Ok(Self {
+            photo: Scratch::default(),
+            picture: Scratch::default(),
+            stamps: [0; 2],
+            uniforms: Buffer::new(runner.device(), 1)?,
+        })
     }
 
     /// A tile of the photo on the device, to be filled and then composited.
     pub fn photo(&mut self, runner: &Runner, width: u32, height: u32) -> Result<&Texture> {
+        self.stamps[0] += 1;
         self.photo.get(runner.device(), Texel::Rgba, width, height)
     }
 
@@ -81,8 +91,14 @@ impl CompositePass {
         self.picture.current().ok_or_else(|| Error::Gl("nothing is drawn".into()))
     }
 
+    /// What tells the photo, and what was last drawn, from any others before.
+    pub fn stamps(&self) -> [u64; 2] {
+        self.stamps
+    }
+
     /// The tile that [`CompositePass::photo`] holds, with its glare.
     pub fn draw(&mut self, runner: &Runner, variant: Variant, settings: &Composite) -> Result<&Texture> {
+        self.stamps[1] += 1;
         let photo = self.loaded()?;
         photo.bind(PHOTO);
         let (width, height) = (photo.level_width(0), photo.level_height(0));
@@ -99,6 +115,7 @@ impl CompositePass {
     ) -> Result<&Texture> {
         let mut defines = variant.defines();
         defines.push(("GLARE_ALONE", "1"));
+        self.stamps[1] += 1;
         Self::run(&mut self.picture, &mut self.uniforms, runner, &defines, settings, size)
     }
 

@@ -37,20 +37,29 @@ impl Source {
 /// Stores the field, and looks it up at probes.
 pub(crate) struct FieldPass {
     field: Scratch,
+    /// How often it was drawn.
+    stamp: u64,
     probed: Scratch,
     probes: Buffer<[i32; 2]>,
 }
 
 impl FieldPass {
     pub fn new(runner: &Runner) -> Result<Self> {
-        Ok(Self { field: Scratch::default(), probed: Scratch::default(), probes: Buffer::new(runner.device(), 0)? })
+        let probes = Buffer::new(runner.device(), 0)?;
+        Ok(Self { field: Scratch::default(), stamp: 0, probed: Scratch::default(), probes })
     }
 
     /// The field of a tile of `width` × `height` pixels, in units of its scale.
     pub fn draw(&mut self, runner: &Runner, source: Source, width: u32, height: u32) -> Result<&Texture> {
+        self.stamp += 1;
         let field = self.field.get(runner.device(), Texel::Rgba, width, height)?;
         runner.draw("field.frag", &source.defines(), field, 0)?;
         Ok(field)
+    }
+
+    /// What was drawn last, and what tells it from any other before.
+    pub fn drawn(&self) -> Option<(&Texture, u64)> {
+        Some((self.field.current()?, self.stamp))
     }
 
     /// Binds what was drawn last, for [`Source::HELD`].

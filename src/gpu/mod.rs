@@ -14,7 +14,8 @@
 //! | `coefficients` | samples of any function → its coefficients |
 //! | `lines` | curves as line strips |
 //! | `copy` | the yardstick of the bench |
-//! | `screen`, `view`, `mask`, `paint` | where the viewer draws; the picture as a display shows it; what is light; egui's shapes |
+//! | `screen`, `mask`, `paint` | where the viewer draws; what of a photo is light; egui's shapes |
+//! | `shrink`, `view` | means of the picture, where it is made smaller; the picture as a display shows it |
 //! | `precision` | how exact the driver's sin, cos and exp are, and vglare's phases |
 
 pub(crate) mod coefficients;
@@ -36,6 +37,7 @@ pub(crate) mod resource;
 pub(crate) mod runner;
 mod screen;
 mod shader;
+pub(crate) mod shrink;
 pub(crate) mod spectrum;
 mod timer;
 pub(crate) mod view;

@@ -1,12 +1,13 @@
-//! The photo and the picture as a display shows them: moved, magnified, exposed, tone-mapped, encoded.
+//! The photo and the picture as a display shows them: moved, magnified or made smaller, exposed, tone-mapped, encoded.
 
 use bytemuck::{Pod, Zeroable};
 
-use super::layout::{PASS, PHOTO, PICTURE};
+use super::layout::{Binding, FIELD, PASS, PHOTO, PICTURE};
 use super::resource::{Buffer, Texture};
 use super::runner::Runner;
 use super::screen::{Region, Screen};
 use super::shader::Define;
+use super::shrink::{Means, Place, ShrinkPass};
 use crate::Result;
 
 /// The view's uniforms; as in `view.frag`.
@@ -25,38 +26,85 @@ pub(crate) struct View {
     pub surround: [f32; 3],
     /// Multiplies the light.
     pub gain: f32,
+    /// The field's unit, RGB.
+    pub scale: [f32; 3],
+    /// What the normalised glare is multiplied by.
+    pub strength: f32,
+    /// What is subtracted from the field, RGB.
+    pub constant: [f32; 3],
+    /// A range of the field's values that is no wider is rounding.
+    pub flat: f32,
+    /// The photo's sides; set by the pass.
+    pub size: [f32; 2],
+    /// The region's corner on the screen; set by the pass.
+    pub corner: [f32; 2],
     /// Columns of the screen from this one on show the picture, those before it the photo.
     pub wipe: f32,
-    /// Rows and columns of the photo from one that is looked at to the next, where it is made smaller.
-    pub stride: u32,
+    /// Whether the textures hold means; set by the pass.
+    pub means: u32,
     pub pad: [u32; 2],
 }
-const _: () = assert!(size_of::<View>() == 96);
+const _: () = assert!(size_of::<View>() == 144);
+
+/// A texture and what tells its content from any other before.
+pub(crate) type Layer<'a> = (&'a Texture, u64);
+
+/// What a view is of; all layers are of one size.
+pub(crate) struct Layers<'a> {
+    /// The photo as it was, where it is seen.
+    pub photo: Option<Layer<'a>>,
+    /// The photo with its glare, or the glare alone, as it was drawn.
+    pub picture: Option<Layer<'a>>,
+    /// The field in its place, which becomes glare here.
+    pub field: Option<Layer<'a>>,
+}
 
 /// Draws the view.
 pub(crate) struct ViewPass {
     uniforms: Buffer<View>,
+    shrink: ShrinkPass,
+    /// Of photo, picture and field.
+    means: [Means; 3],
 }
 
 impl ViewPass {
     pub fn new(runner: &Runner) -> Result<Self> {
-        Ok(Self { uniforms: Buffer::new(runner.device(), 1)? })
+        let uniforms = Buffer::new(runner.device(), 1)?;
+        Ok(Self { uniforms, shrink: ShrinkPass::new(runner)?, means: Default::default() })
     }
 
-    /// Draws a region of the screen, with the map of `shared/tone.glsl` whose number `TONE_MAP` is.
+    /// Draws a region of the screen that lies at `place` of the layers.
     pub fn draw(
         &mut self,
         runner: &Runner,
-        [photo, picture]: [&Texture; 2],
+        layers: &Layers<'_>,
         defines: &[Define<'_>],
         view: &View,
-        screen: &Screen,
-        region: Region,
+        place: &Place,
+        (screen, region): (&Screen, Region),
     ) -> Result<()> {
-        self.uniforms.store(&[View { rows: screen.size()[1] as f32, ..*view }])?;
+        let layers = [layers.photo, layers.picture, layers.field];
+        let Some((sized, _)) = layers.iter().flatten().next() else { return Ok(()) };
+        let size = [sized.level_width(0) as f32, sized.level_height(0) as f32];
+        let smaller = place.pitch > 1.0;
+        let bindings: [Binding; 3] = [PHOTO, PICTURE, FIELD];
+        if smaller {
+            for (layer, means) in layers.into_iter().zip(&mut self.means) {
+                layer.map_or(Ok(()), |layer| self.shrink.draw(runner, layer, place, means))?;
+            }
+        }
+        for ((layer, means), binding) in layers.into_iter().zip(&self.means).zip(bindings) {
+            let Some((texture, _)) = layer else { continue };
+            means.current().filter(|_| smaller).unwrap_or(texture).bind(binding);
+        }
+        let (rows, corner) = (screen.size()[1] as f32, [region.x as f32, region.y as f32]);
+        self.uniforms.store(&[View { rows, size, corner, means: smaller.into(), ..*view }])?;
         self.uniforms.bind_uniform(PASS);
-        photo.bind(PHOTO);
-        picture.bind(PICTURE);
         runner.draw_screen("view.frag", defines, screen, region)
+    }
+
+    /// Frees the means.
+    pub fn unload(&mut self) {
+        self.means = Default::default();
     }
 }

@@ -27,7 +27,7 @@ use crate::{Error, Result};
 
 pub use crate::calibration::Known;
 pub use planned::{Planned, plan};
-pub use settings::settings;
+pub use settings::{bright_light, settings};
 
 /// A photo, and what has come to be known of it on its way to a picture.
 pub struct Job<'a> {
@@ -145,7 +145,7 @@ impl<'a> Job<'a> {
     pub fn new(look: &'a Look, photo: Photo, mut stages: Stages) -> Result<Self> {
         let bad = stages.time("survey", || photo::survey(&photo));
         let scene = stages.time("lights", || look.gather(&photo));
-        let (settings, warning) = settings(look, &photo, &scene)?;
+        let (settings, warning) = settings(look, &photo, &scene, |threshold| bright_light(&photo, threshold))?;
         Ok(Self {
             look,
             photo,

@@ -7,11 +7,17 @@ use crate::renderer::Settings;
 use crate::scene::Ghost;
 use crate::{Error, Result};
 
-/// What the composite is told, and what to warn of.
+/// What the composite is told, and what to warn of. Where light is taken from the photo's lights, `bright` gives
+/// [`bright_light`] for a threshold.
 ///
 /// # Errors
 /// [`Error::Usage`] where light is to be taken for glare that is not physical.
-pub fn settings(look: &Look, photo: &Photo, scene: &Gathered) -> Result<(Settings, Option<String>)> {
+pub fn settings(
+    look: &Look,
+    photo: &Photo,
+    scene: &Gathered,
+    bright: impl FnOnce(f64) -> [f64; 3],
+) -> Result<(Settings, Option<String>)> {
     let mut settings = Settings {
         strength: look.strength,
         normalize: look.normalize,
@@ -25,7 +31,7 @@ pub fn settings(look: &Look, photo: &Photo, scene: &Gathered) -> Result<(Setting
         return Err(Error::Usage("--mix energy needs --normalize none: only that glare has a light's energy".into()));
     }
     let threshold = scene.found.as_ref().map_or(f64::INFINITY, |found| found.threshold);
-    let (gain, enough) = light_gain(photo, &scene.ghosts, threshold, look.strength);
+    let (gain, enough) = light_gain(bright(threshold), &scene.ghosts, look.strength);
     settings.threshold = threshold;
     settings.light_gain = gain;
     let warning = (!enough).then(|| {
@@ -34,9 +40,9 @@ pub fn settings(look: &Look, photo: &Photo, scene: &Gathered) -> Result<(Setting
     Ok((settings, warning))
 }
 
-/// What the pixels at or above `threshold` keep of themselves, so that they lose what the ghosts carry; and whether
-/// they have that much to lose.
-fn light_gain(photo: &Photo, ghosts: &[Ghost], threshold: f64, strength: f64) -> ([f64; 3], bool) {
+/// The flux of all pixels of a photo at or above a luminance, RGB, in the photo's unit times half picture heights
+/// squared.
+pub fn bright_light(photo: &Photo, threshold: f64) -> [f64; 3] {
     let weights = photo.luminance_weights();
     let area = photo.frame.pixel_size().powi(2);
     let mut bright = [0.0; 3];
@@ -50,6 +56,12 @@ fn light_gain(photo: &Photo, ghosts: &[Ghost], threshold: f64, strength: f64) ->
             }
         }
     }
+    bright
+}
+
+/// What pixels with the light `bright` keep of themselves, so that they lose what the ghosts carry; and whether they
+/// have that much to lose.
+fn light_gain(bright: [f64; 3], ghosts: &[Ghost], strength: f64) -> ([f64; 3], bool) {
     let mut scattered = [0.0; 3];
     for ghost in ghosts {
         for (scattered, flux) in scattered.iter_mut().zip(ghost.flux()) {
@@ -79,12 +91,12 @@ mod tests {
             size: DVec2::ONE,
             radiance: [flux / std::f64::consts::TAU, 0.0, 0.0],
         };
-        let (gain, enough) = light_gain(&photo, &[ghost(2.5)], 10.0, 2.0);
+        let (gain, enough) = light_gain(bright_light(&photo, 10.0), &[ghost(2.5)], 2.0);
         assert!((gain[0] - 0.8).abs() < 1e-12 && gain[1..] == [1.0, 1.0] && enough, "{gain:?}");
-        let (gain, enough) = light_gain(&photo, &[ghost(50.0)], 10.0, 1.0);
+        let (gain, enough) = light_gain(bright_light(&photo, 10.0), &[ghost(50.0)], 1.0);
         assert_eq!((gain, enough), ([0.0, 1.0, 1.0], false));
-        let (gain, enough) = light_gain(&photo, &[ghost(1.0)], f64::INFINITY, 1.0);
+        let (gain, enough) = light_gain(bright_light(&photo, f64::INFINITY), &[ghost(1.0)], 1.0);
         assert_eq!((gain, enough), ([0.0, 1.0, 1.0], false));
-        assert_eq!(light_gain(&photo, &[], 10.0, 1.0), ([1.0; 3], true));
+        assert_eq!(light_gain(bright_light(&photo, 10.0), &[], 1.0), ([1.0; 3], true));
     }
 }

@@ -47,12 +47,16 @@ fn one_kind(plan: &Plan) -> Option<&Bell> {
 
 /// The composite that the settings ask for.
 pub(super) fn variant(source: Source, settings: &Settings) -> Variant {
-    let normalize = match settings.normalize {
+    Variant { source, normalize: normalize(settings), take_light: settings.light_gain != [1.0; 3] }
+}
+
+/// How values become glare, by its number in `shared/normalized.glsl`.
+pub(super) fn normalize(settings: &Settings) -> &'static str {
+    match settings.normalize {
         Normalize::None => "0",
         Normalize::Clamp => "1",
         Normalize::Minmax => "2",
-    };
-    Variant { source, normalize, take_light: settings.light_gain != [1.0; 3] }
+    }
 }
 
 /// The members of a group, as the spectrum takes them.
@@ -125,8 +129,10 @@ pub(super) fn table(plan: &Plan, group: &Group) -> Option<Vec<[f32; 4]>> {
 /// The composite's uniforms.
 pub(super) fn uniforms(plan: &Plan, settings: &Settings) -> Composite {
     let rgb = |v: [f64; 3], w: f64| [v[0] as f32, v[1] as f32, v[2] as f32, w as f32];
+    let constant = if settings.normalize == Normalize::Minmax { [0.0; 3] } else { settings.constant };
     Composite {
         scale: rgb(plan.scale, 0.0),
+        constant: rgb(constant, 0.0),
         light_gain: rgb(settings.light_gain, 1.0),
         luminance: rgb(settings.luminance, settings.threshold),
         strength: settings.strength as f32,

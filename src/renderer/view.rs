@@ -8,9 +8,19 @@ use super::{Renderer, Settings, convert};
 use crate::Result;
 use crate::frame::Frame;
 use crate::gpu::field::Source;
-use crate::gpu::view::View as Uniforms;
+use crate::gpu::shrink::Place;
+use crate::gpu::view::{Layers, View as Uniforms};
 use crate::gpu::{Device, Region, Screen};
 use crate::photo::ToneMap;
+
+/// What is looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// The photo with its glare.
+    Picture,
+    /// The glare alone.
+    Glare,
+}
 
 /// How a picture is looked at; the picture itself does not depend on it.
 ///
@@ -75,48 +85,57 @@ impl Renderer {
     /// # Errors
     /// [`crate::Error::Gl`] where no photo is loaded, or the driver refuses.
     pub fn view(&mut self, view: &View, screen: &Screen, region: Region) -> Result<()> {
-        let photo = self.composite.loaded()?;
-        let picture = self.composite.drawn().unwrap_or(photo);
-        let tone_map = match view.tone_map {
-            ToneMap::None => "0",
-            ToneMap::Reinhard => "1",
-            ToneMap::Aces => "2",
-            ToneMap::Agx => "3",
-        };
-        let (taps, stride) = taps(view.pitch);
-        let text = taps.to_string();
-        // The shader counts from the screen's corner.
-        let corner = DVec2::new(f64::from(region.x), f64::from(region.y));
-        let uniforms = Uniforms {
-            gamut: view
-                .gamut
-                .unwrap_or(DMat3::IDENTITY)
-                .to_cols_array_2d()
-                .map(|[r, g, b]| [r as f32, g as f32, b as f32, 0.0]),
-            origin: (view.origin - view.pitch * corner).as_vec2().to_array(),
-            pitch: view.pitch as f32,
-            rows: 0.0,
-            surround: view.surround,
-            gain: view.exposure.exp2() as f32,
-            wipe: (view.wipe + corner.x) as f32,
-            stride,
-            pad: [0; 2],
-        };
-        let mut defines = vec![("TONE_MAP", tone_map)];
-        if taps > 1 {
-            defines.push(("TAPS", &text));
-        }
+        let [photo_stamp, picture_stamp] = self.composite.stamps();
+        let photo = (self.composite.loaded()?, photo_stamp);
+        let picture = self.composite.drawn().ok().map(|picture| (picture, picture_stamp));
         // One of the two alone costs half the fetches.
-        let (left, right) = (view.wipe <= 0.0, view.wipe >= f64::from(region.width));
-        if !left && !right {
-            defines.push(("WIPE", "1"));
+        let layers = match (picture, view.wiped(region)) {
+            (None, _) | (_, Wiped::All) => Layers { photo: Some(photo), picture: None, field: None },
+            (picture, Wiped::Nothing) => Layers { photo: None, picture, field: None },
+            (picture, Wiped::Part) => Layers { photo: Some(photo), picture, field: None },
+        };
+        let defines = view.defines(&layers, region);
+        let (uniforms, place) = (view.uniforms(region), view.place(region));
+        self.view.draw(&self.runner, &layers, &defines, &uniforms, &place, (screen, region))
+    }
+
+    /// Shows a part of the picture that [`Renderer::draw`] or [`Renderer::draw_glare`] would draw with settings that are
+    /// [affine](Settings::is_affine), from the photo and the field that is held, without drawing it: within rounding the
+    /// same, and a change of settings costs the pixels of the screen and none of the photo.
+    ///
+    /// # Errors
+    /// [`crate::Error::Gl`] where there is no scene or no photo is loaded, or the driver refuses.
+    pub fn view_mixed(
+        &mut self,
+        frame: Frame,
+        settings: &Settings,
+        part: Part,
+        view: &View,
+        screen: &Screen,
+        region: Region,
+    ) -> Result<()> {
+        assert!(settings.is_affine(), "the mean of these pixels is none of means");
+        self.hold_field(frame)?;
+        let composite = self.start(frame, settings)?;
+        let wiped = view.wiped(region);
+        let photo = Some((self.composite.loaded()?, self.composite.stamps()[0]));
+        let field = self.field.drawn().filter(|_| wiped != Wiped::All);
+        let photo = photo.filter(|_| part == Part::Picture || wiped != Wiped::Nothing);
+        let layers = Layers { photo, picture: None, field };
+        let mut defines = view.defines(&layers, region);
+        if field.is_some() {
+            defines.extend([("MIXED", "1"), ("NORMALIZE", convert::normalize(settings))]);
+            defines.extend((part == Part::Glare).then_some(("GLARE_ALONE", "1")));
         }
-        let picture = if right { photo } else { picture };
-        if view.gamut.is_some() {
-            // Not by the identity, which would spread what is not finite from one colour to all.
-            defines.push(("GAMUT", "1"));
-        }
-        self.view.draw(&self.runner, [photo, picture], &defines, &uniforms, screen, region)
+        let rgb = |[red, green, blue, _]: [f32; 4]| [red, green, blue];
+        let uniforms = Uniforms {
+            scale: rgb(composite.scale),
+            constant: rgb(composite.constant),
+            strength: composite.strength,
+            flat: composite.flat,
+            ..view.uniforms(region)
+        };
+        self.view.draw(&self.runner, &layers, &defines, &uniforms, &view.place(region), (screen, region))
     }
 
     /// A pixel of the photo and of what was drawn last, linear; none where it is not on the device.
@@ -133,6 +152,13 @@ impl Renderer {
         self.spectrum.read()
     }
 
+    /// The constant term of the field's series, RGB: its mean over a period. None where the plan has no series.
+    pub fn constant_term(&self) -> Option<[f64; 3]> {
+        let (_, plan) = self.scene.as_ref().filter(|(_, plan)| plan.terms > 0)?;
+        let terms = self.spectrum.read();
+        Some([0, 1, 2].map(|colour| f64::from(terms[colour][0]) * plan.scale[colour]))
+    }
+
     /// The device that it renders on.
     pub fn device(&self) -> &Rc<Device> {
         self.runner.device()
@@ -141,31 +167,65 @@ impl Renderer {
     /// Forgets the photo and the picture on the device.
     pub fn unload(&mut self) {
         self.composite.unload();
+        self.view.unload();
     }
 }
 
-/// Rows that a pixel of the screen looks at, and from one of them to the next; as many columns.
-fn taps(pitch: f64) -> (u32, u32) {
-    const MOST: u32 = 12;
-    if pitch <= 1.0 {
-        return (1, 1);
-    }
-    // Beginning anywhere in a row, it reaches into one more than it is wide.
-    let touched = pitch.ceil() as u32 + 1;
-    let stride = touched.div_ceil(MOST);
-    (touched.div_ceil(stride), stride)
+/// What part of a region shows the photo as it was.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Wiped {
+    Nothing,
+    Part,
+    All,
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+impl View {
+    fn wiped(&self, region: Region) -> Wiped {
+        match self.wipe {
+            wipe if wipe <= 0.0 => Wiped::Nothing,
+            wipe if wipe >= f64::from(region.width) => Wiped::All,
+            _ => Wiped::Part,
+        }
+    }
 
-    #[test]
-    fn every_row_that_is_touched_is_looked_at_up_to_twelve() {
-        for (pitch, wanted) in
-            [(0.3, (1, 1)), (1.0, (1, 1)), (1.2, (3, 1)), (11.0, (12, 1)), (11.5, (7, 2)), (64.0, (11, 6))]
-        {
-            assert_eq!(taps(pitch), wanted, "{pitch}");
+    fn place(&self, region: Region) -> Place {
+        Place { origin: self.origin, pitch: self.pitch, size: [region.width, region.height] }
+    }
+
+    /// What the shader is specialised with for this view of these layers.
+    fn defines(&self, layers: &Layers<'_>, region: Region) -> Vec<(&'static str, &'static str)> {
+        let tone_map = match self.tone_map {
+            ToneMap::None => "0",
+            ToneMap::Reinhard => "1",
+            ToneMap::Aces => "2",
+            ToneMap::Agx => "3",
+        };
+        let mut defines = vec![("TONE_MAP", tone_map)];
+        if layers.picture.is_none() && layers.field.is_none() {
+            defines.push(("BEFORE", "1"));
+        } else if self.wiped(region) == Wiped::Part {
+            defines.push(("WIPE", "1"));
+        }
+        if self.gamut.is_some() {
+            // Not by the identity, which would spread what is not finite from one colour to all.
+            defines.push(("GAMUT", "1"));
+        }
+        defines
+    }
+
+    /// The uniforms, without those that a field needs.
+    fn uniforms(&self, region: Region) -> Uniforms {
+        // The shader counts from the screen's corner.
+        let corner = DVec2::new(f64::from(region.x), f64::from(region.y));
+        let gamut = self.gamut.unwrap_or(DMat3::IDENTITY).to_cols_array_2d();
+        Uniforms {
+            gamut: gamut.map(|[r, g, b]| [r as f32, g as f32, b as f32, 0.0]),
+            origin: (self.origin - self.pitch * corner).as_vec2().to_array(),
+            pitch: self.pitch as f32,
+            surround: self.surround,
+            gain: self.exposure.exp2() as f32,
+            wipe: (self.wipe + corner.x) as f32,
+            ..bytemuck::Zeroable::zeroed()
         }
     }
 }

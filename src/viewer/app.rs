@@ -17,6 +17,7 @@ use super::shortcuts::{self, Command};
 use super::stage::{Counts, Stage, Times};
 use super::study::Study;
 use super::task::{State, Task};
+use super::timings::Timings;
 use super::{panels, viewing};
 use crate::Result;
 use crate::gpu::paint::Painter;
@@ -157,6 +158,11 @@ impl App {
     /// How long each kind of work last took.
     pub fn times(&self) -> Times {
         self.stage.times()
+    }
+
+    /// How long the last pictures took.
+    pub fn timings(&self) -> &Timings {
+        self.stage.timings()
     }
 
     /// The plan of the picture.
@@ -319,7 +325,7 @@ impl App {
         if let Some(loupe) = self.canvas.loupe {
             self.stage.magnify(document, loupe.center, loupe.side, loupe.before, screen, loupe.region)?;
             let [column, row] = loupe.pixel;
-            let probe = self.stage.pixel(column, row);
+            let probe = self.stage.pixel(document, column, row)?;
             let probe = probe.map(|[photo, picture]| Probe { pixel: loupe.pixel, photo, picture });
             if probe != self.probe {
                 // The numbers are known once the picture is; the next frame shows them.

@@ -48,5 +48,6 @@ pub use loader::Wake;
 pub use shortcuts::KEYS;
 pub use stage::{Counts, Times};
 pub use study::{Cut, CutPoint, Degree, Plot, Study, Wanted};
+pub use timings::Timings;
 pub use viewing::{Placement, Shows, Viewing, Zoom};
 pub use window::run;

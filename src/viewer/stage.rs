@@ -15,7 +15,7 @@ use crate::gpu::{Device, Region, Screen};
 use crate::job::{self, Known};
 use crate::look::Gathered;
 use crate::plan::Plan;
-use crate::renderer::{Mask, Renderer, Settings, View};
+use crate::renderer::{Mask, Part, Renderer, Settings, View};
 use crate::scene::Goal;
 use crate::{Error, Result};
 
@@ -58,6 +58,12 @@ struct Made {
     /// The look of the field, as it was planned for.
     look: Option<Look>,
     picture: Option<(Settings, Shows)>,
+    /// The light of the photo's bright pixels, for a threshold.
+    bright: Option<(f64, [f64; 3])>,
+    /// The constant term of the spectrum that is there, once it was asked for.
+    constant: Option<[f64; 3]>,
+    /// Whether that picture was drawn; a view can often do without.
+    drawn: bool,
     /// A look that there is no picture of, and why.
     refused: Option<(Look, String)>,
     preview: bool,
@@ -146,26 +152,42 @@ impl Stage {
             self.made.scene = Some(look.gather_from(Some(document.found.clone())));
         }
         let Some(scene) = &self.made.scene else { return Ok(()) };
-        let (settings, _) = job::settings(look, &document.photo, scene)?;
+        let bright = &mut self.made.bright;
+        let (mut settings, _) = job::settings(look, &document.photo, scene, |threshold| match *bright {
+            Some((known, light)) if known == threshold => light,
+            _ => bright.insert((threshold, job::bright_light(&document.photo, threshold))).1,
+        })?;
         if work >= Work::Plan {
             self.update_field(document, look)?;
         }
         self.made.look = Some(look.clone());
+        if document.viewing.without_constant {
+            let constant = &mut self.made.constant;
+            settings.constant = *constant.get_or_insert_with(|| self.renderer.constant_term().unwrap_or_default());
+        }
         if self.made.picture == Some((settings, shows)) {
             return Ok(());
         }
         let started = Instant::now();
-        if self.made.picture.is_some() {
-            // The settings change while the field stays: they may well change again.
-            self.renderer.hold_field(document.frame)?;
+        // The settings may well change again while the field stays.
+        self.renderer.hold_field(document.frame)?;
+        (self.made.picture, self.made.drawn) = (Some((settings, shows)), false);
+        if !settings.is_affine() {
+            self.draw_picture(document)?;
         }
+        self.times.composite = self.elapsed(started);
+        self.counts.composites += 1;
+        Ok(())
+    }
+
+    /// Draws the picture, unless it is drawn.
+    fn draw_picture(&mut self, document: &Document) -> Result<()> {
+        let Some((settings, shows)) = self.made.picture.filter(|_| !self.made.drawn) else { return Ok(()) };
         match shows {
             Shows::Glare => self.renderer.draw_glare(document.frame, &settings)?,
             Shows::Picture | Shows::Photo => self.renderer.draw(document.frame, &settings)?,
         }
-        self.times.composite = self.elapsed(started);
-        self.counts.composites += 1;
-        self.made.picture = Some((settings, shows));
+        self.made.drawn = true;
         Ok(())
     }
 
@@ -180,6 +202,7 @@ impl Stage {
         self.renderer.set_scene(&scene.ghosts, &planned.plan)?;
         self.times.spectrum = self.elapsed(started);
         self.counts.spectra += 1;
+        self.made.constant = None;
         self.plan = Some(planned.plan);
         self.made.picture = None;
         Ok(())
@@ -221,7 +244,7 @@ impl Stage {
             old => {
                 let reused = old.map(|(canvas, _)| canvas).filter(|canvas| canvas.size() == size);
                 let canvas = reused.map_or_else(|| Screen::hidden(self.renderer.device(), size), Ok)?;
-                self.draw(&view, &canvas, canvas.whole())?;
+                self.draw(document, &view, &canvas, canvas.whole())?;
                 canvas
             }
         };
@@ -299,17 +322,30 @@ impl Stage {
         let pitch = 1.0 / f64::from(side);
         let half = DVec2::new(f64::from(region.width), f64::from(region.height)) * (0.5 * pitch);
         let wipe = if before { f64::from(region.width) } else { 0.0 };
-        self.draw(&View { wipe, ..view(document, center - half, pitch) }, screen, region)
+        self.draw(document, &View { wipe, ..view(document, center - half, pitch) }, screen, region)
     }
 
-    fn draw(&mut self, view: &View, screen: &Screen, region: Region) -> Result<()> {
+    fn draw(&mut self, document: &Document, view: &View, screen: &Screen, region: Region) -> Result<()> {
         self.counts.views += 1;
-        self.renderer.view(view, screen, region)
+        match self.made.picture {
+            Some((settings, shows)) if !self.made.drawn => {
+                let part = if shows == Shows::Glare { Part::Glare } else { Part::Picture };
+                self.renderer.view_mixed(document.frame, &settings, part, view, screen, region)
+            }
+            _ => self.renderer.view(view, screen, region),
+        }
     }
 
-    /// A pixel of the photo and of the picture, linear, where both are on the device.
-    pub fn pixel(&self, column: u32, row: u32) -> Option<[[f32; 4]; 2]> {
-        self.renderer.pixel(column, row)
+    /// A pixel of the photo and of the picture, linear, where there are both.
+    ///
+    /// # Errors
+    /// [`crate::Error::Gl`] where the driver refuses.
+    pub fn pixel(&mut self, document: &Document, column: u32, row: u32) -> Result<Option<[[f32; 4]; 2]>> {
+        if self.made.picture.is_none() {
+            return Ok(None);
+        }
+        self.draw_picture(document)?;
+        Ok(self.renderer.pixel(column, row))
     }
 
     /// Leaves the stage empty, so that everything is computed anew.

@@ -45,6 +45,8 @@ pub struct Viewing {
     pub tone_map: ToneMap,
     /// What part of the canvas, 0 to 1 from the left, shows the photo as it was.
     pub wipe: Option<f64>,
+    /// Whether the constant term of the field's series is left out.
+    pub without_constant: bool,
     /// Whether the lights are drawn over the picture.
     pub handles: bool,
     /// Whether a loupe is at the pointer.
@@ -63,6 +65,7 @@ impl Default for Viewing {
             exposure: 0.0,
             tone_map: ToneMap::default(),
             wipe: None,
+            without_constant: false,
             handles: true,
             loupe: false,
             mask: false,

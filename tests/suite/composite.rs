@@ -1,8 +1,8 @@
 //! The photo with its glare: nothing but the glare is added, and a bad pixel harms only itself.
 
 use vglare::frame::Frame;
-use vglare::plan::{Evaluator, Plan};
-use vglare::renderer::{Renderer, Settings};
+use vglare::plan::{Evaluator, Plan, Request, plan};
+use vglare::renderer::{Normalize, Renderer, Settings};
 use vglare::scene::Ghost;
 
 use crate::support::{glare, on_each_backend, plan_with, scenes};
@@ -158,5 +158,57 @@ fn light_is_taken_only_where_the_photo_is_bright_enough() {
                 assert_eq!(after[colour], before[colour] * factor, "{before:?} became {after:?}");
             }
         }
+    });
+}
+
+#[test]
+fn a_constant_is_taken_from_the_field_before_it_becomes_glare() {
+    let (ghosts, plan) = scene();
+    let constant = [0.05, 0.01, 0.002];
+    on_each_backend(|_, renderer| {
+        renderer.set_scene(&ghosts, &plan).unwrap();
+        for normalize in [Normalize::None, Normalize::Clamp, Normalize::Minmax] {
+            let settings = Settings { strength: 2.0, normalize, ..Settings::default() };
+            let raw = renderer.glare(frame(), &Settings { normalize: Normalize::None, ..settings }).unwrap();
+            let with = renderer.glare(frame(), &settings).unwrap();
+            let without = renderer.glare(frame(), &Settings { constant, ..settings }).unwrap();
+            for ((raw, with), without) in raw.iter().zip(&with).zip(&without) {
+                for colour in 0..3 {
+                    let less = raw[colour] - 2.0 * constant[colour] as f32;
+                    let want = match normalize {
+                        Normalize::None => less,
+                        Normalize::Clamp => less.clamp(0.0, 2.0),
+                        Normalize::Minmax => with[colour],
+                    };
+                    let limit = 1e-6 * (raw[colour].abs() + 0.1);
+                    assert!((without[colour] - want).abs() <= limit, "{normalize:?}: {without:?}, not {want}");
+                }
+            }
+        }
+    });
+}
+
+#[test]
+fn the_constant_term_is_all_of_a_series_of_degree_zero() {
+    let (ghosts, _) = scene();
+    let request = |degree| Request {
+        evaluator: Some(Evaluator::Rows),
+        period: Some([8.0, 6.0].into()),
+        degree: Some([degree; 2]),
+        ..Request::new(frame(), 1e-2)
+    };
+    on_each_backend(|_, renderer| {
+        renderer.set_scene(&ghosts, &plan(&ghosts, &request(0)).unwrap()).unwrap();
+        let level = renderer.probe(frame(), &[[3, 4]]).unwrap()[0];
+        renderer.set_scene(&ghosts, &plan(&ghosts, &request(40)).unwrap()).unwrap();
+        let constant = renderer.constant_term().unwrap();
+        for colour in 0..3 {
+            assert!(
+                (constant[colour] - level[colour]).abs() <= 1e-6 * level[colour].abs(),
+                "{constant:?}, not {level:?}"
+            );
+        }
+        renderer.set_scene(&ghosts, &plan_with(&ghosts, frame(), 1e-3, Evaluator::Direct)).unwrap();
+        assert_eq!(renderer.constant_term(), None, "bells have none");
     });
 }

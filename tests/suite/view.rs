@@ -5,7 +5,7 @@ use vglare::frame::Frame;
 use vglare::gpu::{Region, Screen};
 use vglare::photo::ToneMap;
 use vglare::plan::{Request, plan};
-use vglare::renderer::{Renderer, Settings, View};
+use vglare::renderer::{Normalize, Part, Renderer, Settings, View};
 
 use crate::support::{bits, on_each_backend, scenes};
 
@@ -162,5 +162,43 @@ fn a_held_field_gives_the_same_picture() {
         }
         assert_eq!(bits(&pictures[0]), bits(&pictures[1]));
         assert_ne!(bits(&pictures[1]), bits(&pictures[2]), "another scene lets go of the field");
+    });
+}
+
+#[test]
+fn a_mixed_view_is_that_of_the_picture() {
+    let frame = Frame::full(60, 40);
+    let photo: Vec<_> = (0..60 * 40u32).map(|k| [(k * 7919 % 100) as f32 / 200.0, 0.1, 0.3, 1.0]).collect();
+    let scenes = [[0.3, -0.2], [-0.4, 0.5]].map(|center| [scenes::one(center, 0.4, [0.5, 0.25, 1.0])]);
+    let places = [(1.0, 0.0, 60), (0.4, 7.25, 80), (2.5, -3.0, 40), (14.0, -100.0, 30)];
+    on_each_backend(|_, renderer| {
+        renderer.load(frame, &photo).unwrap();
+        for ghosts in &scenes {
+            renderer.set_scene(ghosts, &plan(ghosts, &Request::new(frame, 1e-3)).unwrap()).unwrap();
+            for normalize in [Normalize::None, Normalize::Minmax] {
+                for (part, wipe) in
+                    [(Part::Picture, 0.0), (Part::Picture, 11.0), (Part::Glare, 0.0), (Part::Glare, 9.0)]
+                {
+                    let settings = Settings { strength: 0.6, normalize, ..Settings::default() };
+                    match part {
+                        Part::Picture => renderer.draw(frame, &settings).unwrap(),
+                        Part::Glare => renderer.draw_glare(frame, &settings).unwrap(),
+                    }
+                    for (pitch, at, side) in places {
+                        let screen = Screen::hidden(renderer.device(), [side + 5, side + 3]).unwrap();
+                        let region = Region { x: 4, y: 1, width: side, height: side };
+                        let view = View { pitch, origin: DVec2::splat(at), wipe, ..view() };
+                        screen.clear([0.0; 3]);
+                        renderer.view(&view, &screen, region).unwrap();
+                        let drawn = screen.read();
+                        screen.clear([0.0; 3]);
+                        renderer.view_mixed(frame, &settings, part, &view, &screen, region).unwrap();
+                        let off = |(a, b): (&[u8; 4], &[u8; 4])| (0..4).map(|c| a[c].abs_diff(b[c])).max();
+                        let worst = drawn.iter().zip(&screen.read()).filter_map(off).max().unwrap();
+                        assert!(worst <= 1, "{part:?} {normalize:?} wipe {wipe} pitch {pitch}: {worst} codes apart");
+                    }
+                }
+            }
+        }
     });
 }

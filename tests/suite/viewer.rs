@@ -13,6 +13,7 @@ use glam::DVec2;
 use vglare::gpu::{Backend, Device, Screen};
 use vglare::look::Look;
 use vglare::photo::{self, Photo, WriteOptions};
+use vglare::plan::Evaluator;
 use vglare::scene::Goal;
 use vglare::viewer::{App, Document, Shows};
 
@@ -192,6 +193,25 @@ fn before_and_after_change_places_without_computing() {
     let now = session.app.counts();
     assert_eq!((now.uploads, now.spectra, now.composites), (counts.uploads, counts.spectra, counts.composites));
     assert!(session.screen.read() == after, "the picture comes back as it was");
+}
+
+#[test]
+fn without_its_constant_term_the_glare_is_darker() {
+    let mut session = Session::with_photo();
+    let document = session.app.document_mut().unwrap();
+    document.look.accuracy.evaluator = Some(Evaluator::Rows);
+    document.viewing.shows = Shows::Glare;
+    document.viewing.exposure = 3.0;
+    session.settle();
+    let beside = session.at(session.document().lights()[0].position + DVec2::new(0.2, 0.0));
+    let (counts, with) = (session.app.counts(), session.brightness(beside));
+    session.app.document_mut().unwrap().viewing.without_constant = true;
+    session.settle();
+    assert!(session.brightness(beside) < with, "{with}");
+    session.app.document_mut().unwrap().viewing.without_constant = false;
+    session.settle();
+    let now = session.app.counts();
+    assert_eq!((session.brightness(beside), now.spectra), (with, counts.spectra));
 }
 
 #[test]

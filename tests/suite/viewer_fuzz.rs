@@ -146,6 +146,9 @@ fn random_input_breaks_nothing_and_memory_does_not_grow() {
         if seed == WARM_SEEDS {
             warm = Some(resident());
         }
+        if asked.is_some() && seed.is_multiple_of(20) {
+            println!("{frames} frames, {} MiB", resident() >> 20);
+        }
     }
     let (warm, now) = (warm.unwrap(), resident());
     println!("{frames} frames of {seed} seeds; {} MiB, after {} MiB", now >> 20, warm >> 20);

@@ -13,8 +13,8 @@ use crate::measure::Samples;
 use crate::photo::Photo;
 use crate::scene::{LensGhost, Light};
 use crate::series::Bell;
-use crate::viewer::Document;
 use crate::viewer::replay::{Outcome, Place, Player, Step};
+use crate::viewer::{Document, Times, Timings};
 
 /// Frames of a drag.
 const FRAMES: usize = 60;
@@ -27,7 +27,7 @@ const LIGHT_BAR: f64 = 8.0;
 /// Drags and rests, with a photo and a screen of the same size.
 pub(super) fn window(device: &Rc<Device>, size: [u32; 2], report: &mut Report) -> Result<()> {
     let mut table = Table::new("Frames of the window", "second").note(format!(
-        "{FRAMES} frames of each drag, the device's work included; \"most\" is the worst. Stages are the last frame's."
+        "{FRAMES} frames of each drag, the device's work included; \"most\" is the worst. Indented: what they are made of."
     ));
     let slider = |part| Place::Control("Strength".into(), part);
     let strength = Step::Drag { from: slider(0.3), to: slider(0.9), frames: FRAMES };
@@ -39,12 +39,13 @@ pub(super) fn window(device: &Rc<Device>, size: [u32; 2], report: &mut Report) -
     for (name, look, step, bar) in arms {
         let mut player = open(device, size, look)?;
         let outcome = player.step(&step)?;
-        rows(&mut table, &name, &outcome);
+        table.row(name.clone(), &outcome.frames_ms.iter().copied().collect(), None);
+        stages(&mut table, player.app().timings());
         let median = outcome.frames_ms.iter().copied().collect::<Samples>().median();
         report.bar(format!("{name}, frames a second"), Target::AtLeast(bar), 1e3 / median);
         let rested = player.step(&Step::Rest)?;
         let idle = player.step(&Step::Idle(FRAMES))?;
-        rows(&mut table, &format!("idle after the {name}"), &idle);
+        table.row(format!("idle after the {name}"), &idle.frames_ms.iter().copied().collect(), None);
         let work = |outcome: &Outcome| {
             let counts = outcome.counts;
             counts.uploads + counts.spectra + counts.composites + counts.views
@@ -98,11 +99,16 @@ fn many_ghosts() -> Look {
     }
 }
 
-fn rows(table: &mut Table, name: &str, outcome: &Outcome) {
-    table.row(name, &outcome.frames_ms.iter().copied().collect(), None);
-    for (stage, ms) in
-        [("plan", outcome.times.plan), ("spectrum", outcome.times.spectrum), ("composite", outcome.times.composite)]
-    {
-        table.row(format!("  {stage}"), &[ms].into_iter().collect(), None);
+/// The times of the work of which a drag's frames are made; the rest of a frame is the panels'.
+fn stages(table: &mut Table, timings: &Timings) {
+    let all: [(&str, fn(&Times) -> f64); 4] = [
+        ("plan", |times| times.plan),
+        ("spectrum", |times| times.spectrum),
+        ("field and composite", |times| times.composite),
+        ("view", |times| times.view),
+    ];
+    let skipped = timings.pictures().len().saturating_sub(FRAMES);
+    for (name, time) in all {
+        table.row(format!("  {name}"), &timings.pictures().skip(skipped).map(time).collect(), None);
     }
 }

@@ -24,6 +24,7 @@ pub fn show(ui: &mut Ui, document: &mut Document, stage: &Stage) {
         evaluator(ui, document);
         degree(ui, document, stage);
         period(ui, document, stage);
+        constant(ui, document);
     });
 }
 
@@ -83,5 +84,14 @@ fn period(ui: &mut Ui, document: &mut Document, stage: &Stage) {
     }
     if period != before && period.is_none_or(DVec2::is_finite) {
         document.look.set_period(period);
+    }
+}
+
+fn constant(ui: &mut Ui, document: &mut Document) {
+    let mut seen = !document.viewing.without_constant;
+    let about = "Whether the constant term (DC) of the series is seen, where the plan has a series: the field's mean over a \
+                 period. Of the view only; stretched values are the same without it.";
+    if control::flag(ui, "Constant", about, &mut seen, true) {
+        document.viewing.without_constant = !seen;
     }
 }

@@ -68,7 +68,7 @@ fn changed(session: &mut Session) -> (Look, Viewing) {
     let view = &mut document.viewing;
     (view.exposure, view.tone_map, view.wipe) = (2.0, ToneMap::Aces, Some(0.25));
     (view.shows, view.mask, view.handles, view.loupe) = (Shows::Glare, true, false, true);
-    view.wanted.certificate = false;
+    (view.wanted.certificate, view.without_constant) = (false, true);
     (view.wanted.plot, view.wanted.cut) = (Plot::Section, Cut { horizontal: false, at: 0.25 });
     (before, viewing)
 }
