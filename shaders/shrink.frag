@@ -24,7 +24,11 @@ void main() {
     int first = int(low);
     vec3 sum = vec3(0.0);
     float weights = 0.0;
+#ifdef TAPS
+    for (int tap = 0; tap < TAPS; tap++) {
+#else
     for (int tap = 0; tap < taps; tap++) {
+#endif
         int at = first + stride * tap;
         float weight = min(float(at) + 1.0, high) - max(float(at), low);
         at = clamp(at, 0, last);

@@ -24,17 +24,17 @@ layout(std140, binding = BINDING_PASS) uniform Pass {
     vec2 corner;     // of the means on the screen, where the photo is made smaller
     float wipe;      // columns of the screen from this one on show the picture, those before it the photo
     int means;       // not 0: the textures hold means, a texel a pixel of the screen
-    int pad0;
-    int pad1;
+    vec2 coarse;     // texels of the field to a pixel of the photo, where it has fewer; else 0
 };
 layout(location = 0) out vec4 shown;
 
-// The light at a texel: of the photo before it got its glare, or after.
-vec3 light_at(bool before, ivec2 texel) {
+// The light at a place of the photo, or at the texel that holds it: before it got its glare, or after.
+vec3 light_at(bool before, vec2 at, ivec2 texel) {
 #if defined(BEFORE)
     vec3 light = texelFetch(photo, texel, 0).rgb;
 #elif defined(MIXED)
-    vec3 light = strength * normalized(scale * texelFetch(field, texel, 0).rgb - constant, flat_span);
+    ivec2 place = coarse.x > 0.0 ? ivec2(coarse * at) : texel;
+    vec3 light = strength * normalized(scale * texelFetch(field, place, 0).rgb - constant, flat_span);
 #ifndef GLARE_ALONE
     light += texelFetch(photo, texel, 0).rgb;
 #endif
@@ -54,7 +54,7 @@ void main() {
         shown = vec4(surround, 1.0);
         return;
     }
-    vec3 light = light_at(pixel.x < wipe, ivec2(means != 0 ? pixel - corner : at));
+    vec3 light = light_at(pixel.x < wipe, at, ivec2(means != 0 ? pixel - corner : at));
 #ifdef GAMUT
     light = gamut * light;
 #endif

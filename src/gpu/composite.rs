@@ -86,6 +86,11 @@ impl CompositePass {
         self.photo.current().ok_or_else(|| Error::Gl("no photo is loaded".into()))
     }
 
+    /// The photo's columns and rows.
+    pub fn size(&self) -> Result<[u32; 2]> {
+        self.loaded().map(|photo| [photo.level_width(0), photo.level_height(0)])
+    }
+
     /// What was last drawn.
     pub fn drawn(&self) -> Result<&Texture> {
         self.picture.current().ok_or_else(|| Error::Gl("nothing is drawn".into()))

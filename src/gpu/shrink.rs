@@ -6,6 +6,7 @@ use glam::DVec2;
 use super::layout::{PASS, PICTURE};
 use super::resource::{Buffer, Scratch, Texel, Texture};
 use super::runner::Runner;
+use super::shader::Define;
 use crate::Result;
 
 /// Texels along one axis that a mean looks at, at most; of more, some are left out evenly.
@@ -51,13 +52,6 @@ pub(crate) struct Means {
     of: Option<(u64, Place)>,
 }
 
-impl Means {
-    /// The means as they were last drawn.
-    pub fn current(&self) -> Option<&Texture> {
-        self.means.current()
-    }
-}
-
 impl ShrinkPass {
     pub fn new(runner: &Runner) -> Result<Self> {
         Ok(Self { uniforms: Buffer::new(runner.device(), 1)?, strips: Scratch::default() })
@@ -65,17 +59,21 @@ impl ShrinkPass {
 
     /// Brings means up to date: of `source`, whose content `stamp` tells from any other, a texel for each pixel of the
     /// view. Where the view is off the source they mean nothing.
-    pub fn draw(
+    pub fn draw<'a>(
         &mut self,
         runner: &Runner,
         (source, stamp): (&Texture, u64),
         place: &Place,
-        into: &mut Means,
-    ) -> Result<()> {
-        if into.of == Some((stamp, *place)) {
-            return Ok(());
-        }
+        into: &'a mut Means,
+    ) -> Result<&'a Texture> {
         let Place { origin, pitch, size: [width, height] } = *place;
+        let known = into.of == Some((stamp, *place));
+        into.of = None;
+        let means = into.means.get(runner.device(), Texel::Rgba, width, height)?;
+        if known {
+            into.of = Some((stamp, *place));
+            return Ok(means);
+        }
         let [columns, rows] = [source.level_width(0), source.level_height(0)];
         let (taps, stride) = taps(pitch);
         let axis = |origin: f64, length: u32, aside: u32| Axis {
@@ -92,17 +90,23 @@ impl ShrinkPass {
         let first = (origin.y.max(0.0) as u32).min(rows - 1);
         let end = ((origin.y + pitch * f64::from(height)).ceil().max(0.0) as u32).clamp(first + 1, rows);
         let strips = self.strips.get(runner.device(), Texel::Rgba, width, end - first)?;
-        let means = into.means.get(runner.device(), Texel::Rgba, width, height)?;
-        let mut run = |axis: Axis, source: &Texture, defines: &[_], target: &Texture| {
+        // A loop of known length takes half the time on a software renderer. Few lengths, so that magnifying compiles little.
+        let unrolled = match taps {
+            3 => Some(("TAPS", "3")),
+            4 => Some(("TAPS", "4")),
+            _ => None,
+        };
+        let mut run = |axis: Axis, source: &Texture, along: Option<Define<'_>>, target: &Texture| {
+            let defines: Vec<_> = unrolled.into_iter().chain(along).collect();
             self.uniforms.store(&[axis])?;
             self.uniforms.bind_uniform(PASS);
             source.bind(PICTURE);
-            runner.draw("shrink.frag", defines, target, 0)
+            runner.draw("shrink.frag", &defines, target, 0)
         };
-        run(axis(origin.x, columns, first), source, &[], strips)?;
-        run(axis(origin.y - f64::from(first), end - first, 0), strips, &[("ALONG_Y", "1")], means)?;
+        run(axis(origin.x, columns, first), source, None, strips)?;
+        run(axis(origin.y - f64::from(first), end - first, 0), strips, Some(("ALONG_Y", "1")), means)?;
         into.of = Some((stamp, *place));
-        Ok(())
+        Ok(means)
     }
 }
 

@@ -42,20 +42,23 @@ pub(crate) struct View {
     pub wipe: f32,
     /// Whether the textures hold means; set by the pass.
     pub means: u32,
-    pub pad: [u32; 2],
+    /// Texels of the field to a pixel of the photo, where it has fewer, else 0; set by the pass.
+    pub coarse: [f32; 2],
 }
 const _: () = assert!(size_of::<View>() == 144);
 
 /// A texture and what tells its content from any other before.
 pub(crate) type Layer<'a> = (&'a Texture, u64);
 
-/// What a view is of; all layers are of one size.
+/// What a view is of. Photo and picture are of one size.
 pub(crate) struct Layers<'a> {
+    /// Columns and rows of the photo.
+    pub size: [u32; 2],
     /// The photo as it was, where it is seen.
     pub photo: Option<Layer<'a>>,
     /// The photo with its glare, or the glare alone, as it was drawn.
     pub picture: Option<Layer<'a>>,
-    /// The field in its place, which becomes glare here.
+    /// The field in its place, which becomes glare here; it may be coarser than the photo.
     pub field: Option<Layer<'a>>,
 }
 
@@ -83,22 +86,25 @@ impl ViewPass {
         place: &Place,
         (screen, region): (&Screen, Region),
     ) -> Result<()> {
-        let layers = [layers.photo, layers.picture, layers.field];
-        let Some((sized, _)) = layers.iter().flatten().next() else { return Ok(()) };
-        let size = [sized.level_width(0) as f32, sized.level_height(0) as f32];
+        let size = layers.size.map(|side| side as f32);
         let smaller = place.pitch > 1.0;
+        let coarse = layers.field.map_or([0.0; 2], |(field, _)| {
+            let sides = [field.level_width(0), field.level_height(0)];
+            if sides == layers.size { [0.0; 2] } else { [0, 1].map(|axis| sides[axis] as f32 / size[axis]) }
+        });
+        let layers = [layers.photo, layers.picture, layers.field];
+        let shrinks = [smaller, smaller, smaller && coarse == [0.0; 2]];
         let bindings: [Binding; 3] = [PHOTO, PICTURE, FIELD];
-        if smaller {
-            for (layer, means) in layers.into_iter().zip(&mut self.means) {
-                layer.map_or(Ok(()), |layer| self.shrink.draw(runner, layer, place, means))?;
+        for (((layer, means), shrinks), binding) in layers.into_iter().zip(&mut self.means).zip(shrinks).zip(bindings) {
+            let Some((texture, stamp)) = layer else { continue };
+            if shrinks {
+                self.shrink.draw(runner, (texture, stamp), place, means)?.bind(binding);
+            } else {
+                texture.bind(binding);
             }
         }
-        for ((layer, means), binding) in layers.into_iter().zip(&self.means).zip(bindings) {
-            let Some((texture, _)) = layer else { continue };
-            means.current().filter(|_| smaller).unwrap_or(texture).bind(binding);
-        }
         let (rows, corner) = (screen.size()[1] as f32, [region.x as f32, region.y as f32]);
-        self.uniforms.store(&[View { rows, size, corner, means: smaller.into(), ..*view }])?;
+        self.uniforms.store(&[View { rows, size, corner, means: smaller.into(), coarse, ..*view }])?;
         self.uniforms.bind_uniform(PASS);
         runner.draw_screen("view.frag", defines, screen, region)
     }

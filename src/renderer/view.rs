@@ -89,11 +89,12 @@ impl Renderer {
         let photo = (self.composite.loaded()?, photo_stamp);
         let picture = self.composite.drawn().ok().map(|picture| (picture, picture_stamp));
         // One of the two alone costs half the fetches.
-        let layers = match (picture, view.wiped(region)) {
-            (None, _) | (_, Wiped::All) => Layers { photo: Some(photo), picture: None, field: None },
-            (picture, Wiped::Nothing) => Layers { photo: None, picture, field: None },
-            (picture, Wiped::Part) => Layers { photo: Some(photo), picture, field: None },
+        let (photo, picture) = match (picture, view.wiped(region)) {
+            (None, _) | (_, Wiped::All) => (Some(photo), None),
+            (picture, Wiped::Nothing) => (None, picture),
+            (picture, Wiped::Part) => (Some(photo), picture),
         };
+        let layers = Layers { size: self.composite.size()?, photo, picture, field: None };
         let defines = view.defines(&layers, region);
         let (uniforms, place) = (view.uniforms(region), view.place(region));
         self.view.draw(&self.runner, &layers, &defines, &uniforms, &place, (screen, region))
@@ -101,7 +102,8 @@ impl Renderer {
 
     /// Shows a part of the picture that [`Renderer::draw`] or [`Renderer::draw_glare`] would draw with settings that are
     /// [affine](Settings::is_affine), from the photo and the field that is held, without drawing it: within rounding the
-    /// same, and a change of settings costs the pixels of the screen and none of the photo.
+    /// same, and a change of settings costs the pixels of the screen and none of the photo. A frame of fewer pixels than the
+    /// photo's gives a field that is as coarse.
     ///
     /// # Errors
     /// [`crate::Error::Gl`] where there is no scene or no photo is loaded, or the driver refuses.
@@ -121,7 +123,7 @@ impl Renderer {
         let photo = Some((self.composite.loaded()?, self.composite.stamps()[0]));
         let field = self.field.drawn().filter(|_| wiped != Wiped::All);
         let photo = photo.filter(|_| part == Part::Picture || wiped != Wiped::Nothing);
-        let layers = Layers { photo, picture: None, field };
+        let layers = Layers { size: self.composite.size()?, photo, picture: None, field };
         let mut defines = view.defines(&layers, region);
         if field.is_some() {
             defines.extend([("MIXED", "1"), ("NORMALIZE", convert::normalize(settings))]);

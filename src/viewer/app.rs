@@ -28,7 +28,7 @@ use crate::scene::{FindOptions, Found};
 use files::Files;
 pub(super) use files::LookFile;
 
-/// Milliseconds of plan, spectrum and composite from which on a drag is shown by previews.
+/// Milliseconds of plan, spectrum, composite and view from which on a drag is shown by previews.
 const SLOW: f64 = 33.0;
 /// For how long nothing must change before a preview is replaced while the pointer still holds on, in seconds.
 const SETTLED: f64 = 0.3;
@@ -300,14 +300,14 @@ impl App {
         let done = self.stage.counts();
         let problem = self.stage.problem().is_some();
         self.stage.update(*number, document, preview)?;
-        if !preview && self.stage.counts().spectra > done.spectra {
-            let times = self.stage.times();
-            self.cost = times.plan + times.spectrum + times.composite;
-        }
         let surround = opaque(self.context.global_style().visuals.extreme_bg_color);
         self.stage.show(document, &placement, surround, screen)?;
         if document.viewing.mask || document.sets_threshold {
             self.stage.mask(document, &placement, screen)?;
+        }
+        if !preview && self.stage.counts().spectra > done.spectra {
+            let times = self.stage.times();
+            self.cost = times.plan + times.spectrum + times.composite + times.view;
         }
         let mut again = if preview { Duration::from_secs_f64(SETTLED - still) } else { Duration::MAX };
         if problem != self.stage.problem().is_some() {

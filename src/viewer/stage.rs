@@ -11,6 +11,7 @@ use super::model::{self, Accuracy, Look, Work};
 use super::study::{Picture, Study};
 use super::timings::Timings;
 use super::viewing::{Placement, Shows};
+use crate::frame::Frame;
 use crate::gpu::{Device, Region, Screen};
 use crate::job::{self, Known};
 use crate::look::Gathered;
@@ -55,8 +56,9 @@ pub struct Times {
 struct Made {
     document: Option<u64>,
     scene: Option<Gathered>,
-    /// The look of the field, as it was planned for.
+    /// The look of the field, as it was planned for, and the pixels that it was planned for.
     look: Option<Look>,
+    frame: Option<Frame>,
     picture: Option<(Settings, Shows)>,
     /// The light of the photo's bright pixels, for a threshold.
     bright: Option<(f64, [f64; 3])>,
@@ -133,7 +135,7 @@ impl Stage {
             return Ok(());
         }
         self.made.refused = None;
-        match self.render(document, &look, shows) {
+        match self.render(document, &look, shows, preview) {
             Err(error @ Error::Gl(_)) => return Err(error),
             Err(error) => self.made.refused = Some((look, error.to_string())),
             Ok(()) => self.made.preview = preview,
@@ -142,8 +144,11 @@ impl Stage {
     }
 
     /// Does again what a look that has changed asks for.
-    fn render(&mut self, document: &Document, look: &Look, shows: Shows) -> Result<()> {
-        let work = self.made.look.as_ref().map_or(Work::Lights, |made| model::work(made, look));
+    fn render(&mut self, document: &Document, look: &Look, shows: Shows, preview: bool) -> Result<()> {
+        let mut work = self.made.look.as_ref().map_or(Work::Lights, |made| model::work(made, look));
+        if preview != self.made.preview {
+            work = work.max(Work::Plan);
+        }
         if work >= Work::Plan {
             // Until all of it is done, what is there is of no look.
             self.made.look = None;
@@ -158,7 +163,9 @@ impl Stage {
             _ => bright.insert((threshold, job::bright_light(&document.photo, threshold))).1,
         })?;
         if work >= Work::Plan {
-            self.update_field(document, look)?;
+            // Pixels are not looked at one by one while they move.
+            let frame = if preview && settings.is_affine() { halved(document.frame) } else { document.frame };
+            self.update_field(frame, look)?;
         }
         self.made.look = Some(look.clone());
         if document.viewing.without_constant {
@@ -170,7 +177,7 @@ impl Stage {
         }
         let started = Instant::now();
         // The settings may well change again while the field stays.
-        self.renderer.hold_field(document.frame)?;
+        self.renderer.hold_field(self.made.frame.unwrap_or(document.frame))?;
         (self.made.picture, self.made.drawn) = (Some((settings, shows)), false);
         if !settings.is_affine() {
             self.draw_picture(document)?;
@@ -192,11 +199,11 @@ impl Stage {
     }
 
     /// Plans as `vglare apply` does, and computes the spectrum.
-    fn update_field(&mut self, document: &Document, look: &Look) -> Result<()> {
+    fn update_field(&mut self, frame: Frame, look: &Look) -> Result<()> {
         let Some(scene) = &self.made.scene else { return Ok(()) };
         let started = Instant::now();
         let device = self.renderer.device().info();
-        let planned = job::plan(&look.accuracy, &scene.ghosts, document.frame, Some(device), self.known.clone())?;
+        let planned = job::plan(&look.accuracy, &scene.ghosts, frame, Some(device), self.known.clone())?;
         self.times.plan = started.elapsed().as_secs_f64() * 1e3;
         let started = Instant::now();
         self.renderer.set_scene(&scene.ghosts, &planned.plan)?;
@@ -204,7 +211,7 @@ impl Stage {
         self.counts.spectra += 1;
         self.made.constant = None;
         self.plan = Some(planned.plan);
-        self.made.picture = None;
+        (self.made.frame, self.made.picture) = (Some(frame), None);
         Ok(())
     }
 
@@ -330,7 +337,8 @@ impl Stage {
         match self.made.picture {
             Some((settings, shows)) if !self.made.drawn => {
                 let part = if shows == Shows::Glare { Part::Glare } else { Part::Picture };
-                self.renderer.view_mixed(document.frame, &settings, part, view, screen, region)
+                let frame = self.made.frame.unwrap_or(document.frame);
+                self.renderer.view_mixed(frame, &settings, part, view, screen, region)
             }
             _ => self.renderer.view(view, screen, region),
         }
@@ -381,6 +389,12 @@ impl Stage {
     pub fn times(&self) -> Times {
         self.times
     }
+}
+
+/// A frame of half as many columns and rows; the same where not all of it is stored.
+fn halved(frame: Frame) -> Frame {
+    let (width, height) = (frame.width, frame.height);
+    if frame == Frame::full(width, height) { Frame::full(width.div_ceil(2), height.div_ceil(2)) } else { frame }
 }
 
 /// The look that is to be rendered.

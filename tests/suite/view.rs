@@ -202,3 +202,28 @@ fn a_mixed_view_is_that_of_the_picture() {
         }
     });
 }
+
+#[test]
+fn a_coarse_field_lies_where_the_fine_one_does() {
+    let (frame, coarse) = (Frame::full(121, 80), Frame::full(61, 40));
+    let photo = vec![[0.02, 0.05, 0.1, 1.0]; 121 * 80];
+    // Off the centre both ways, so that a field upside down or shifted is seen.
+    let ghosts = [scenes::one([0.7, -0.4], 0.5, [0.3, 0.2, 0.1])];
+    on_each_backend(|_, renderer| {
+        renderer.load(frame, &photo).unwrap();
+        for pitch in [0.5, 1.0, 1.7] {
+            let screen = Screen::hidden(renderer.device(), [(121.0 / pitch) as u32, (80.0 / pitch) as u32]).unwrap();
+            let [fine, rough] = [frame, coarse].map(|frame| {
+                renderer.set_scene(&ghosts, &plan(&ghosts, &Request::new(frame, 1e-3)).unwrap()).unwrap();
+                let (view, settings) = (View { pitch, ..view() }, Settings::default());
+                renderer.view_mixed(frame, &settings, Part::Picture, &view, &screen, screen.whole()).unwrap();
+                screen.read()
+            });
+            let off = |(a, b): (&[u8; 4], &[u8; 4])| (0..3).map(|c| a[c].abs_diff(b[c])).max();
+            let worst = fine.iter().zip(&rough).filter_map(off).max().unwrap();
+            let spread =
+                fine.iter().map(|pixel| pixel[0]).max().unwrap() - fine.iter().map(|pixel| pixel[0]).min().unwrap();
+            assert!(worst <= 6 && spread > 60, "pitch {pitch}: {worst} codes apart of {spread}");
+        }
+    });
+}
