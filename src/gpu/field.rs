@@ -51,9 +51,20 @@ impl FieldPass {
 
     /// The field of a tile of `width` × `height` pixels, in units of its scale.
     pub fn draw(&mut self, runner: &Runner, source: Source, width: u32, height: u32) -> Result<&Texture> {
+        self.draw_in_bands(runner, source, [width, height], 1)
+    }
+
+    /// The same, by as many draws one above the other: drivers reset themselves when one takes seconds.
+    pub fn draw_in_bands(
+        &mut self,
+        runner: &Runner,
+        source: Source,
+        [width, height]: [u32; 2],
+        bands: u32,
+    ) -> Result<&Texture> {
         self.stamp += 1;
         let field = self.field.get(runner.device(), Texel::Rgba, width, height)?;
-        runner.draw("field.frag", &source.defines(), field, 0)?;
+        runner.draw_in_bands("field.frag", &source.defines(), field, bands)?;
         Ok(field)
     }
 

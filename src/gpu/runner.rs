@@ -57,6 +57,28 @@ impl Runner {
         Ok(())
     }
 
+    /// Draws all of `target` by several draws, one band of rows each.
+    pub fn draw_in_bands(&self, path: &str, defines: &[Define<'_>], target: &Texture, bands: u32) -> Result<()> {
+        if bands <= 1 {
+            return self.draw(path, defines, target, 0);
+        }
+        let program = self.program(path, defines, Program::fragment)?;
+        let (gl, width, height) = (self.device.gl(), target.level_width(0) as i32, target.level_height(0));
+        let edge = |band: u32| (u64::from(height) * u64::from(band) / u64::from(bands)) as i32;
+        self.run(label(path), || {
+            target.target(0);
+            program.bind();
+            unsafe { gl.enable(glow::SCISSOR_TEST) };
+            for band in 0..bands {
+                unsafe { gl.scissor(0, edge(band), width, edge(band + 1) - edge(band)) };
+                self.triangle.draw();
+                unsafe { gl.flush() };
+            }
+            unsafe { gl.disable(glow::SCISSOR_TEST) };
+        });
+        Ok(())
+    }
+
     /// Draws a region of the screen with a fragment shader of `shaders/`.
     pub fn draw_screen(&self, path: &str, defines: &[Define<'_>], screen: &Screen, region: Region) -> Result<()> {
         let program = self.program(path, defines, Program::fragment)?;

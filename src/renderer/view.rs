@@ -53,7 +53,8 @@ impl Renderer {
     pub fn hold_field(&mut self, frame: Frame) -> Result<()> {
         if self.held != Some(frame) {
             let source = self.evaluate(frame, frame.window)?;
-            self.field.draw(&self.runner, source, frame.window.width, frame.window.height)?;
+            let bands = self.tiles(frame.window).len() as u32;
+            self.field.draw_in_bands(&self.runner, source, [frame.window.width, frame.window.height], bands)?;
             self.held = Some(frame);
         }
         Ok(())
@@ -107,6 +108,9 @@ impl Renderer {
     ///
     /// # Errors
     /// [`crate::Error::Gl`] where there is no scene or no photo is loaded, or the driver refuses.
+    ///
+    /// # Panics
+    /// If the settings are not affine.
     pub fn view_mixed(
         &mut self,
         frame: Frame,

@@ -161,6 +161,15 @@ fn a_held_field_gives_the_same_picture() {
             pictures.push(picture);
         }
         assert_eq!(bits(&pictures[0]), bits(&pictures[1]));
+        // What takes too long for one draw is held by several.
+        renderer.set_tile_pixels(100);
+        renderer.set_scene(&ghosts, &by(&ghosts)).unwrap();
+        renderer.hold_field(frame).unwrap();
+        renderer.set_tile_pixels(usize::MAX);
+        renderer.draw(frame, &settings).unwrap();
+        let mut picture = photo.clone();
+        renderer.fetch(frame, &mut picture).unwrap();
+        assert_eq!(bits(&pictures[0]), bits(&picture), "in bands");
         assert_ne!(bits(&pictures[1]), bits(&pictures[2]), "another scene lets go of the field");
     });
 }
