@@ -62,7 +62,11 @@ pub fn show(ui: &mut Ui, document: &mut Document) {
     }
     let before = document.lens_before.ghosts().to_vec();
     control::fold(ui, "Lens ghosts", "What the lens makes of each light, a row a ghost", |ui| {
-        ScrollArea::horizontal().show(ui, |ui| table(ui, &mut document.look, &before));
+        ScrollArea::horizontal().show(ui, |ui| {
+            table(ui, &mut document.look, &before);
+            // The bar lies over what is at the bottom.
+            ui.add_space(8.0);
+        });
         if control::button(ui, "Add a row", "A small ghost opposite the light") {
             document.look.add_lens_ghost(NEW);
         }
@@ -114,7 +118,9 @@ fn row(ui: &mut Ui, bells: &Bells, index: usize, ghost: &mut LensGhost, before: 
     done_by(ui, format!("row {row}"), about, |_| number);
     let (name, about) = (format!("bell {row}"), format!("The ghost's profile; {}.", bell::MEAN));
     let reset = before.bell.to_string();
-    if cell(ui, &about, bell::SPAN, name, &reset, |ui| bells.show(ui, ("bell", index), &mut ghost.bell)) {
+    // With its mean, where it has one, in one column.
+    let list = |ui: &mut Ui| ui.horizontal(|ui| bells.show(ui, ("bell", index), &mut ghost.bell)).inner;
+    if cell(ui, &about, bell::SPAN, name, &reset, list) {
         ghost.bell = before.bell.clone();
     }
     let name = |number: &Number| format!("{} {row}", number.name);

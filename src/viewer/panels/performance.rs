@@ -68,7 +68,7 @@ fn graph(ui: &mut Ui, stage: &Stage) {
         .show_x(false)
         .x_axis_label("picture")
         .y_axis_label("ms")
-        .legend(Legend::default().position(egui_plot::Corner::LeftBottom).follow_insertion_order(true));
+        .legend(Legend::default().position(egui_plot::Corner::RightTop).follow_insertion_order(true));
     let shown = plot.show(ui, |plot| {
         for (name, _, time) in PASSES {
             let points = stage.timings().pictures().enumerate().map(|(k, times)| [k as f64, time(times)]);
