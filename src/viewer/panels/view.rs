@@ -35,9 +35,9 @@ const TONE_MAPS: [(ToneMap, &str, &str); 4] = [
 ];
 
 const SHOWS: [(Shows, &str, &str); 3] = [
-    (Shows::Picture, "Glare", "the photo with its glare"),
+    (Shows::Picture, "After", "the photo with its glare"),
     (Shows::Photo, "Before", "the photo as it was (B)"),
-    (Shows::Glare, "Alone", "the glare alone, what is added (G)"),
+    (Shows::Glare, "Glare", "the glare alone, what is added (G)"),
 ];
 
 const THEMES: [(ThemePreference, &str, &str); 3] = [
