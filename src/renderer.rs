@@ -15,6 +15,7 @@
 mod convert;
 mod exchange;
 mod graf;
+mod mask;
 mod settings;
 mod tiles;
 mod view;
@@ -28,6 +29,7 @@ use crate::gpu::composite::{Composite, CompositePass};
 use crate::gpu::copy::CopyPass;
 use crate::gpu::evaluators::Evaluators;
 use crate::gpu::field::{FieldPass, Source};
+use crate::gpu::mask::MaskPass;
 use crate::gpu::range::RangePass;
 use crate::gpu::runner::Runner;
 use crate::gpu::spectrum::{Coefficients, Ghosts, Spectrum, SpectrumGroup};
@@ -40,6 +42,7 @@ use crate::{Error, Result};
 use exchange::Exchange;
 pub use exchange::Pending;
 pub use graf::{GrafRenderer, GrafScene};
+pub use mask::Mask;
 pub use settings::Settings;
 pub use view::{Part, View};
 
@@ -55,6 +58,7 @@ pub struct Renderer {
     composite: CompositePass,
     copy: CopyPass,
     view: ViewPass,
+    mask: MaskPass,
     exchange: Exchange,
     scene: Option<(Vec<Ghost>, Plan)>,
     /// The frame whose field is held, if any.
@@ -81,6 +85,7 @@ impl Renderer {
             composite: CompositePass::new(&runner)?,
             copy: CopyPass::default(),
             view: ViewPass::new(&runner)?,
+            mask: MaskPass::new(&runner)?,
             // The software renderer's memory is the photo's own: there a buffer is one more copy.
             exchange: Exchange::new(!device.info().software),
             scene: None,

@@ -14,7 +14,7 @@
 //! | `coefficients` | samples of any function → its coefficients |
 //! | `lines` | curves as line strips |
 //! | `copy` | the yardstick of the bench |
-//! | `screen`, `paint` | where the viewer draws; egui's shapes |
+//! | `screen`, `mask`, `paint` | where the viewer draws; what of a photo is light; egui's shapes |
 //! | `shrink`, `view` | means of the picture, where it is made smaller; the picture as a display shows it |
 //! | `precision` | how exact the driver's sin, cos and exp are, and vglare's phases |
 
@@ -28,6 +28,7 @@ pub(crate) mod graf;
 mod harmonics;
 pub(crate) mod layout;
 pub(crate) mod lines;
+pub(crate) mod mask;
 pub(crate) mod paint;
 pub(crate) mod pixels;
 pub mod precision;

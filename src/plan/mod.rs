@@ -177,6 +177,34 @@ impl Prediction {
     }
 }
 
+/// One source of error, as a prediction has it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Source {
+    /// One word for it.
+    pub name: &'static str,
+    /// What the error comes from, in some words.
+    pub about: &'static str,
+    /// What it costs at most, relative to the largest glare of the same colour.
+    pub error: f64,
+}
+
+impl Prediction {
+    /// Every source with its error, in the order in which the data meets them.
+    pub fn sources(&self) -> impl Iterator<Item = Source> + use<> {
+        let &Self { dropped, periodisation, truncation, interpolation, gathering, rounding, storage } = self;
+        let sources = [
+            ("dropped", "ghosts left out", dropped),
+            ("periodisation", "wrapped copies", periodisation),
+            ("truncation", "harmonics left out", truncation),
+            ("interpolation", "looking up between the lattice's nodes", interpolation),
+            ("gathering", "moments left out", gathering),
+            ("rounding", "32-bit floats while they compute", rounding),
+            ("storage", "keeping results as 32-bit floats", storage),
+        ];
+        sources.into_iter().map(|(name, about, error)| Source { name, about, error })
+    }
+}
+
 /// Parts of the tolerance that the sources may use up, after what rounding takes.
 mod share {
     pub const DROPPED: f64 = 0.02;

@@ -12,6 +12,7 @@ use std::time::Duration;
 use egui::{CentralPanel, Color32, Key, Modifiers, Panel, RawInput, Ui};
 
 use super::canvas::{self, Canvas, Probe};
+use super::control::{self, Told};
 use super::document::Document;
 use super::loader::{Loader, Wake};
 use super::model::{Look, Work, work};
@@ -20,7 +21,7 @@ use super::stage::{Counts, Stage, Times};
 use super::study::Study;
 use super::task::{State, Task};
 use super::timings::Timings;
-use super::{control, panels, viewing};
+use super::{panels, viewing};
 use crate::Result;
 use crate::gpu::paint::Painter;
 use crate::gpu::{Device, Screen};
@@ -184,10 +185,15 @@ impl App {
         self.stage.known()
     }
 
-    /// Where the slider of the control called `name`, or the header of the panel called so, was drawn last, in points,
-    /// for scripts to drag and click.
+    /// What the panels' controls said of themselves in the last frame, those that were folded away left out.
+    pub fn controls(&self) -> Vec<Told> {
+        control::told(&self.context)
+    }
+
+    /// Where the control called `name`, of a number its slider, or the header of the panel called so, was drawn last, in
+    /// points, for scripts to drag and click.
     pub fn control(&self, name: &str) -> Option<egui::Rect> {
-        self.context.data(|data| data.get_temp(control::place(name)))
+        self.controls().into_iter().find(|told| told.name == name).map(|told| told.part)
     }
 
     /// egui's side of it.
@@ -220,6 +226,7 @@ impl App {
             self.ui(ui, screen);
         });
         self.settle(before);
+        self.remember_theme();
         screen.clear(opaque(context.global_style().visuals.extreme_bg_color));
         let again = match self.draw(screen) {
             // What fails on a device that is lost is no news of the picture.
@@ -307,6 +314,9 @@ impl App {
         self.stage.update(*number, document, preview)?;
         let surround = opaque(self.context.global_style().visuals.extreme_bg_color);
         self.stage.show(document, &placement, surround, screen)?;
+        if document.viewing.mask || document.sets_threshold {
+            self.stage.mask(document, &placement, screen)?;
+        }
         if !preview && self.stage.counts().spectra > done.spectra {
             let times = self.stage.times();
             self.cost = times.plan + times.spectrum + times.composite + times.view;
@@ -341,6 +351,7 @@ impl App {
     fn ui(&mut self, ui: &mut Ui, screen: &Screen) {
         let dropped = ui.input(|input| input.raw.dropped_files.clone());
         dropped.iter().for_each(|file| self.open(file.path().to_owned()));
+        control::begin(ui.ctx());
         let asked = self.asks();
         self.bar(ui);
         self.tabs(ui);
@@ -356,7 +367,7 @@ impl App {
         };
         let placement = self.canvas.placement.as_ref();
         let command = if asks { None } else { shortcuts::apply(ui.ctx(), document, placement) };
-        Panel::right("panels").default_size(300.0).show(ui, |ui| panels::show(ui, document, &self.stage));
+        Panel::right("panels").default_size(320.0).show(ui, |ui| panels::show(ui, document, &self.stage));
         let canvas = CentralPanel::no_frame()
             .show(ui, |ui| canvas::show(ui, document, &self.stage, screen.size(), self.probe.as_ref()));
         self.canvas = canvas.inner;

@@ -6,12 +6,12 @@ use std::sync::Arc;
 use glam::{DMat3, DVec2};
 
 use super::app::LookFile;
-use super::model::{History, Look};
+use super::model::{History, Look, LookLens};
 use super::viewing::Viewing;
 use crate::Result;
 use crate::frame::{Frame, Window};
 use crate::photo::{self, Photo};
-use crate::scene::{FindOptions, Found, Light};
+use crate::scene::{FindOptions, Found, Ghost, Light};
 
 /// The most pixels that are computed live: one tile of the renderer's, 4 Mpx.
 ///
@@ -47,6 +47,16 @@ pub struct Document {
     pub viewing: Viewing,
     /// The light that is selected.
     pub selected: Option<usize>,
+    /// It as it was when it was selected, for its way back.
+    light_before: Option<Light>,
+    /// The light that the list of lights is to show next.
+    pub(super) shows_light: Option<usize>,
+    /// The ghost of no light that is selected, and it as it was then.
+    pub(super) selected_ghost: Option<(usize, Ghost)>,
+    /// The lens that its table was made from.
+    pub(super) lens_before: LookLens,
+    /// Whether a control of the threshold is at hand, so that what it tells from the rest is to be seen.
+    pub(super) sets_threshold: bool,
 }
 
 impl Document {
@@ -77,9 +87,14 @@ impl Document {
             history: History::new(look.clone()),
             file: None,
             opened: look.clone(),
+            lens_before: look.lens.clone(),
             look,
             viewing: Viewing::default(),
             selected: None,
+            light_before: None,
+            shows_light: None,
+            selected_ghost: None,
+            sets_threshold: false,
         }
     }
 
@@ -98,10 +113,35 @@ impl Document {
         self.look.lights_mut(&self.found.lights)
     }
 
+    /// Selects a light, and no ghost.
+    pub fn select(&mut self, index: usize) {
+        self.light_before = self.lights().get(index).copied();
+        self.selected = self.light_before.map(|_| index);
+        self.shows_light = self.selected;
+        self.selected_ghost = None;
+    }
+
+    /// Selects a ghost that no light makes, and no light.
+    pub fn select_ghost(&mut self, index: usize) {
+        self.selected_ghost = self.look.ghosts.get(index).map(|ghost| (index, ghost.clone()));
+        self.selected = None;
+    }
+
+    /// The light that is selected, as it was then.
+    pub(super) fn light_before(&self) -> Option<Light> {
+        self.selected.and(self.light_before)
+    }
+
     /// Takes a light away.
     pub fn delete_light(&mut self, index: usize) {
         self.look.delete_light(&self.found.lights, index);
         self.selected = None;
+    }
+
+    /// Takes a ghost away that no light makes.
+    pub fn delete_ghost(&mut self, index: usize) {
+        self.look.delete_ghost(index);
+        self.selected_ghost = None;
     }
 
     /// What is set, as far as it is known what it means: while the photo is searched anew, with the search before.
@@ -161,6 +201,8 @@ impl Document {
     fn drop_selection(&mut self) {
         let count = self.lights().len();
         self.selected = self.selected.filter(|&index| index < count);
+        let ghosts = self.look.ghosts.len();
+        self.selected_ghost = self.selected_ghost.take().filter(|&(index, _)| index < ghosts);
     }
 
     /// The file's name, without its folder.

@@ -47,9 +47,11 @@ mod viewing;
 mod window;
 
 pub use app::{App, Shown};
+pub use control::Told;
 pub use document::{Document, LIVE_PIXELS};
 pub use export::Subject;
 pub use loader::Wake;
+pub use shortcuts::KEYS;
 pub use stage::{Counts, Times};
 pub use status::Status;
 pub use study::{Cut, CutPoint, Degree, Plot, Study, Wanted};

@@ -8,23 +8,29 @@ use super::viewing::{MOST_EXPOSURE, Placement, Shows, Zoom};
 use crate::photo::ToneMap;
 
 /// Keys and what they do, for the list that a person can read.
-pub const KEYS: [(&str, &str); 16] = [
+///
+/// A test holds it against what the window takes: names of keys as egui has them, with what is held before them.
+pub const KEYS: [(&str, &str); 20] = [
     ("F, 1", "fit the photo to the window; a pixel to a pixel"),
-    ("+, −", "magnify, make smaller"),
+    ("+, =, −", "magnify; make smaller"),
     ("B", "the photo as it was, and back"),
     ("G", "the glare alone, and back"),
     ("W", "a wipe between the photo as it was and with its glare"),
     ("L", "the lights' handles"),
     ("I", "the loupe"),
+    ("K", "a mark on every pixel that is light"),
     ("[, ]", "a third of a stop darker, lighter"),
     ("T", "the next tone map"),
-    ("arrows", "move the selected light by a pixel of the photo, with Shift by ten"),
-    ("M, Delete", "mute, delete the selected light"),
+    ("Left, Right, Up, Down", "move the selected light or ghost by a pixel of the photo, with Shift by ten"),
+    ("M", "mute the selected light"),
+    ("Delete", "delete the selected light or ghost"),
     ("Ctrl+O, Ctrl+S", "open a photo; save the picture"),
     ("Ctrl+Shift+S, Ctrl+Shift+C", "save the look; copy the command line"),
-    ("Ctrl+Z, Ctrl+Shift+Z", "undo; redo, as Ctrl+Y does"),
+    ("Ctrl+Z", "undo"),
+    ("Ctrl+Shift+Z, Ctrl+Y", "redo"),
     ("Ctrl+Tab, Ctrl+W", "the next photo; close this one"),
     ("Ctrl+Q", "close the window"),
+    ("Ctrl++, Ctrl+=, Ctrl+−, Ctrl+0", "larger, smaller letters; as they were"),
 ];
 
 /// What keys ask of the window rather than of one document.
@@ -60,7 +66,10 @@ pub fn apply(context: &Context, document: &mut Document, placement: Option<&Plac
     if pressed(Key::I) {
         viewing.loupe = !viewing.loupe;
     }
-    light(context, document, &pressed);
+    if pressed(Key::K) {
+        viewing.mask = !viewing.mask;
+    }
+    selected(context, document, &pressed);
     // A slow frame may have several presses; each is a step.
     let count = |modifiers, key| context.input_mut(|input| input.count_and_consume_key(modifiers, key));
     let redone = count(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z) + count(Modifiers::COMMAND, Key::Y);
@@ -104,30 +113,53 @@ fn look_at(document: &mut Document, placement: Option<&Placement>, pressed: &dyn
     }
 }
 
-fn light(context: &Context, document: &mut Document, pressed: &dyn Fn(Key) -> bool) {
-    let Some(selected) = document.selected.filter(|&index| index < document.lights().len()) else { return };
-    let pixel = document.frame.pixel_size();
+/// What moves, mutes and deletes the light or the ghost that is selected.
+fn selected(context: &Context, document: &mut Document, pressed: &dyn Fn(Key) -> bool) {
+    let light = document.selected.filter(|&index| index < document.lights().len());
+    let ghost = document.selected_ghost.as_ref().map(|&(index, _)| index);
+    let ghost = ghost.filter(|&index| index < document.look.ghosts.len());
+    if light.is_none() && ghost.is_none() {
+        return;
+    }
+    let by = moved(context) * document.frame.pixel_size();
+    let deleted = pressed(Key::Delete);
+    if let Some(index) = light {
+        if by != DVec2::ZERO {
+            document.lights_mut()[index].position += by;
+        }
+        if pressed(Key::M) {
+            let light = &mut document.lights_mut()[index];
+            light.muted = !light.muted;
+        }
+        if deleted {
+            document.delete_light(index);
+        }
+    } else if let Some(index) = ghost {
+        document.look.ghosts[index].center += by;
+        if deleted {
+            document.delete_ghost(index);
+        }
+    }
+}
+
+/// By how many pixels the arrows move what is selected, y up.
+fn moved(context: &Context) -> DVec2 {
     let arrows = [
         (Key::ArrowLeft, DVec2::NEG_X),
         (Key::ArrowRight, DVec2::X),
         (Key::ArrowUp, DVec2::Y),
         (Key::ArrowDown, DVec2::NEG_Y),
     ];
+    let mut by = DVec2::ZERO;
     // A slider that has the keyboard takes the arrows for itself.
     if context.memory(|memory| memory.focused()).is_none() {
         for (key, way) in arrows {
             for (modifiers, pixels) in [(Modifiers::SHIFT, 10.0), (Modifiers::NONE, 1.0)] {
                 if context.input_mut(|input| input.consume_key(modifiers, key)) {
-                    document.lights_mut()[selected].position += way * pixels * pixel;
+                    by += way * pixels;
                 }
             }
         }
     }
-    if pressed(Key::M) {
-        let light = &mut document.lights_mut()[selected];
-        light.muted = !light.muted;
-    }
-    if pressed(Key::Delete) {
-        document.delete_light(selected);
-    }
+    by
 }

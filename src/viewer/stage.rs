@@ -16,7 +16,7 @@ use crate::gpu::{Device, Region, Screen};
 use crate::job::{self, Known};
 use crate::look::Gathered;
 use crate::plan::Plan;
-use crate::renderer::{Part, Renderer, Settings, View};
+use crate::renderer::{Mask, Part, Renderer, Settings, View};
 use crate::scene::Goal;
 use crate::{Error, Result};
 
@@ -260,6 +260,17 @@ impl Stage {
         self.times.view = self.elapsed(started);
         self.timings.keep(self.counts.composites, self.times);
         Ok(())
+    }
+
+    /// Marks on the screen which pixels of the shown photo are light by the threshold as it is set, searched for or not.
+    ///
+    /// # Errors
+    /// [`crate::Error::Gl`] where the driver refuses.
+    pub fn mask(&mut self, document: &Document, placement: &Placement, screen: &Screen) -> Result<()> {
+        let threshold = document.look.find.threshold.unwrap_or(document.found.threshold);
+        let weights = document.photo.luminance_weights();
+        let mask = Mask { threshold, weights, origin: placement.origin, pitch: placement.pitch };
+        self.renderer.mask(&mask, screen, placement.region)
     }
 
     /// Looks into the picture as the document wants it, unless it is a preview or `moving`. Says whether there is news

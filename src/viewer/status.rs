@@ -6,24 +6,9 @@ use egui::Pos2;
 use serde::Serialize;
 
 use super::app::App;
+use super::control::Told;
 use super::stage::Counts;
 use crate::choices::Evaluator;
-
-/// What can be clicked or dragged by name; those that are on the screen are in [`Status::controls`].
-const NAMES: [&str; 12] = [
-    "Look",
-    "View",
-    "Lights",
-    "Accuracy",
-    "Plots",
-    "Performance",
-    "Keys",
-    "Strength",
-    "Size",
-    "By hand",
-    "Evaluator",
-    "Evaluator rows",
-];
 
 /// What is open and set, and where it is.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -54,8 +39,8 @@ pub struct Status {
     pub scale: f32,
     /// Where the lights are on the screen, in pixels from its top left.
     pub lights_at: Vec<[f32; 2]>,
-    /// Left, top, right and bottom of the controls, in pixels.
-    pub controls: BTreeMap<&'static str, [f32; 4]>,
+    /// Left, top, right and bottom of the controls that are shown, in pixels.
+    pub controls: BTreeMap<String, [f32; 4]>,
 }
 
 impl Status {
@@ -67,9 +52,9 @@ impl Status {
         let lights = document.map(|document| document.lights()).unwrap_or_default();
         let placed = app.placement().zip(document);
         let at = |position| placed.map(|(placement, document)| placement.to_screen(document.place(position)));
-        let control = |name| {
-            let [[left, top], [right, bottom]] = app.control(name).map(|rect| [rect.min, rect.max].map(pixels))?;
-            Some((name, [left, top, right, bottom]))
+        let control = |told: Told| {
+            let [[left, top], [right, bottom]] = [told.part.min, told.part.max].map(pixels);
+            (told.name, [left, top, right, bottom])
         };
         Self {
             photo: document.map(super::Document::name),
@@ -85,7 +70,7 @@ impl Status {
             counts: app.counts(),
             scale,
             lights_at: lights.iter().filter_map(|light| at(light.position)).map(pixels).collect(),
-            controls: NAMES.into_iter().filter_map(control).collect(),
+            controls: app.controls().into_iter().map(control).collect(),
         }
     }
 }

@@ -51,6 +51,8 @@ pub struct Viewing {
     pub handles: bool,
     /// Whether a loupe is at the pointer.
     pub loupe: bool,
+    /// Whether the pixels that are light are marked.
+    pub mask: bool,
     /// What is to be found out while it rests.
     pub wanted: Wanted,
 }
@@ -66,6 +68,7 @@ impl Default for Viewing {
             without_constant: false,
             handles: true,
             loupe: false,
+            mask: false,
             wanted: Wanted::default(),
         }
     }

@@ -1,8 +1,10 @@
 //! The window without a window: events in, state and pixels out, and nothing computed that did not change.
 
 mod files;
+mod ghosts;
 
 use std::path::Path;
+use std::rc::Rc;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -21,6 +23,7 @@ const CTRL: Modifiers = Modifiers { ctrl: true, command: true, ..Modifiers::NONE
 
 /// A person at a screen that nobody sees.
 struct Session {
+    device: Rc<Device>,
     app: App,
     screen: Screen,
     time: f64,
@@ -33,7 +36,7 @@ impl Session {
         let device = Device::open(&Backend::ALL).unwrap();
         let app = App::new(&device, Look::default(), Arc::new(|| {})).unwrap();
         let screen = Screen::hidden(&device, SIZE).unwrap();
-        Self { app, screen, time: 0.0, due: Duration::ZERO, copied: Vec::new() }
+        Self { device, app, screen, time: 0.0, due: Duration::ZERO, copied: Vec::new() }
     }
 
     /// With a synthetic photo open.
@@ -46,7 +49,8 @@ impl Session {
 
     fn frame(&mut self, events: Vec<Event>) {
         self.time += 0.02;
-        let rect = Rect::from_min_size(Pos2::ZERO, vec2(SIZE[0] as f32, SIZE[1] as f32));
+        let size = self.screen.size().map(|side| side as f32);
+        let rect = Rect::from_min_size(Pos2::ZERO, vec2(size[0], size[1]));
         let time = Some(self.time);
         let input = RawInput { screen_rect: Some(rect), time, events, focused: true, ..RawInput::default() };
         let shown = self.app.frame(input, &self.screen).unwrap();

@@ -1,10 +1,13 @@
 //! The panels that look into a picture: what they show is true, costs nothing at rest, and looks as it did.
 
+mod controls;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use egui::{Event, Modifiers, PointerButton, Pos2, RawInput, Rect, Theme, pos2, vec2};
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, RawInput, Rect, Theme, pos2, vec2};
+use glam::DVec2;
 use image::RgbImage;
 use vglare::choices::Evaluator;
 use vglare::gpu::{Backend, Device, Screen};
@@ -12,7 +15,7 @@ use vglare::look::Look;
 use vglare::photo::Photo;
 use vglare::reference;
 use vglare::scene::Goal;
-use vglare::viewer::{App, Cut, Document, Plot};
+use vglare::viewer::{App, Cut, Document, Plot, Told};
 
 const SIZE: [u32; 2] = [1000, 1500];
 /// Set, the golden pictures are written instead of compared with.
@@ -26,14 +29,21 @@ struct Session {
 }
 
 impl Session {
-    /// With a synthetic photo open, only this panel besides, and what it studies known.
-    fn with(open: &str, theme: Theme) -> Self {
+    /// With a synthetic photo open, on a screen of so many pixels.
+    fn of_size(size: [u32; 2]) -> Self {
         let device = Device::open(&Backend::ALL).unwrap();
         let app = App::new(&device, Look::default(), Arc::new(|| {})).unwrap();
-        app.context().set_theme(theme);
-        let screen = Screen::hidden(&device, SIZE).unwrap();
+        let screen = Screen::hidden(&device, size).unwrap();
         let mut session = Self { app, screen, time: 0.0, due: Duration::ZERO };
         session.app.add(Document::new(Path::new("lamp.exr"), lamp(), Look::default()));
+        session.settle();
+        session
+    }
+
+    /// With a synthetic photo open, only this panel besides, and what it studies known.
+    fn with(open: &str, theme: Theme) -> Self {
+        let mut session = Self::of_size(SIZE);
+        session.app.context().set_theme(theme);
         session.settle();
         for (title, is_open) in [("Look", true), ("View", true), ("Lights", true), ("Accuracy", true), ("Plots", false)]
         {
@@ -50,7 +60,8 @@ impl Session {
 
     fn frame(&mut self, events: Vec<Event>) {
         self.time += 0.05;
-        let rect = Rect::from_min_size(Pos2::ZERO, vec2(SIZE[0] as f32, SIZE[1] as f32));
+        let size = self.screen.size().map(|side| side as f32);
+        let rect = Rect::from_min_size(Pos2::ZERO, vec2(size[0], size[1]));
         let input =
             RawInput { screen_rect: Some(rect), time: Some(self.time), events, focused: true, ..RawInput::default() };
         self.due = self.app.frame(input, &self.screen).unwrap().repaint_after;
@@ -258,9 +269,16 @@ fn alike((mean, most): (f64, u8)) -> bool {
     mean < 1.5 && most < 48
 }
 
-/// The panels' side of the screen with one of them open.
+/// The panels' side of the screen with one of them open, and all that is folded away in it.
 fn panel(title: &str, plot: Plot, theme: Theme) -> RgbImage {
     let mut session = Session::with(title, theme);
+    session.document().select(0);
+    session.settle();
+    for fold in ["Lens ghosts", "By hand"] {
+        if session.app.control(fold).is_some() {
+            session.click(fold);
+        }
+    }
     // Not by what this machine was found to be fast at, and with a spectrum to be shown.
     session.document().look.accuracy.evaluator = Some(Evaluator::Rows);
     session.plot(plot);
@@ -277,6 +295,9 @@ fn panel(title: &str, plot: Plot, theme: Theme) -> RgbImage {
 fn panels_look_as_they_did() {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden-ui");
     let panels = [
+        ("look", "Look", Plot::Off),
+        ("view", "View", Plot::Off),
+        ("lights", "Lights", Plot::Off),
         ("accuracy", "Accuracy", Plot::Off),
         ("spectrum", "Plots", Plot::Spectrum),
         ("section", "Plots", Plot::Section),

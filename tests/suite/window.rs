@@ -67,10 +67,10 @@ fn a_look_is_set_by_pointer_saved_and_undone() {
     let unfolded = desk.until("the choice of an evaluator", |status| status["controls"]["Evaluator"].is_array());
     desk.rested();
     desk.click(on(&unfolded, "Evaluator", 0.5));
-    let choices = desk.until("its choices", |status| status["controls"]["Evaluator rows"].is_array());
+    let choices = desk.until("its choices", |status| status["controls"]["choose rows (parametric)"].is_array());
     assert_ne!(choices["evaluator"], "rows");
     desk.rested();
-    desk.click(on(&choices, "Evaluator rows", 0.5));
+    desk.click(on(&choices, "choose rows (parametric)", 0.5));
     desk.until("another evaluator", |status| status["evaluator"] == "rows");
 
     desk.key("ctrl+shift+s");

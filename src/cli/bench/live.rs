@@ -99,9 +99,12 @@ fn many_ghosts() -> Look {
     }
 }
 
+/// A kind of work, and its time.
+type Stage = (&'static str, fn(&Times) -> f64);
+
 /// The times of the work of which a drag's frames are made; the rest of a frame is the panels'.
 fn stages(table: &mut Table, timings: &Timings) {
-    let all: [(&str, fn(&Times) -> f64); 4] = [
+    let all: [Stage; 4] = [
         ("plan", |times| times.plan),
         ("spectrum", |times| times.spectrum),
         ("field and composite", |times| times.composite),

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use crate::job::Planned;
-use crate::plan::{Evaluator, Group, Plan, Transform};
+use crate::plan::{Evaluator, Group, Plan, Source, Transform};
 use crate::series::moments::Cells;
 
 /// Groups that are told one by one.
@@ -67,19 +67,11 @@ fn groups(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
 }
 
 fn errors(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
-    let error = plan.predicted;
-    for (label, source, value) in [
-        ("bounds", "from ghosts left out (dropped)", error.dropped),
-        ("", "from wrapped copies (periodisation)", error.periodisation),
-        ("", "from harmonics left out (truncation)", error.truncation),
-        ("", "from interpolation", error.interpolation),
-        ("", "from moments left out (gathering)", error.gathering),
-        ("", "from rounding", error.rounding),
-        ("", "from keeping results as 32-bit floats (storage)", error.storage),
-        ("", "in all (total)", error.total()),
-    ] {
-        writeln!(out, "{label:<9}at most {value:.1e} {source}")?;
+    for (index, Source { name, about, error }) in plan.predicted.sources().enumerate() {
+        let label = if index == 0 { "bounds" } else { "" };
+        writeln!(out, "{label:<9}at most {error:.1e} from {about} ({name})")?;
     }
+    writeln!(out, "{:<9}at most {:.1e} in all (total)", "", plan.predicted.total())?;
     writeln!(out, "         {:.1e} is the tolerance", plan.tolerance)
 }
 

@@ -3,17 +3,17 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
-use egui::{CentralPanel, Key, Modifiers, Panel, ProgressBar, Response, Ui};
+use egui::{CentralPanel, Key, Modifiers, Panel, ProgressBar, Response, ThemePreference, Ui};
 
 use super::App;
 use super::ask::{Questions, likely};
 use crate::Result;
 use crate::scene::{read_scene, write_scene};
 use crate::viewer::ask::Purpose;
-use crate::viewer::control::place;
+use crate::viewer::control::{self, Told};
 use crate::viewer::document::Document;
 use crate::viewer::export::{Export, Subject};
-use crate::viewer::model::{Look, State, command_line};
+use crate::viewer::model::{Look, State, Theme, command_line};
 
 /// How often the file of a look is looked at while nothing else happens.
 const LOOK_AGAIN: Duration = Duration::from_secs(2);
@@ -38,6 +38,8 @@ pub struct Files {
     /// When that was, in egui's seconds.
     kept_at: f64,
     recent: Vec<PathBuf>,
+    /// The theme as it is remembered.
+    theme: Option<Theme>,
 }
 
 /// The scene file that a look was read from or written to last.
@@ -62,6 +64,10 @@ impl App {
             Err(error) => self.notice(error.to_string()),
         }
         self.files.recent = state.recent().unwrap_or_default();
+        if let Some(theme) = state.theme() {
+            self.context.set_theme(preference(theme));
+        }
+        self.files.theme = Some(self.theme());
         self.files.state = Some(state);
     }
 
@@ -164,6 +170,24 @@ impl App {
         }
     }
 
+    fn theme(&self) -> Theme {
+        match self.context.options(|options| options.theme_preference) {
+            ThemePreference::System => Theme::System,
+            ThemePreference::Light => Theme::Light,
+            ThemePreference::Dark => Theme::Dark,
+        }
+    }
+
+    /// Remembers the theme, where it was changed.
+    pub(super) fn remember_theme(&mut self) {
+        let theme = self.theme();
+        let Some(state) = self.files.state.as_ref().filter(|_| self.files.theme != Some(theme)) else { return };
+        self.files.theme = Some(theme);
+        if let Err(error) = state.keep_theme(theme) {
+            self.notice(error.to_string());
+        }
+    }
+
     /// Takes what has come of exports, and looks whose files have changed.
     pub(super) fn take_in_files(&mut self) {
         let mut ended = Vec::new();
@@ -211,7 +235,7 @@ impl App {
                     for (choice, name) in COMMANDS {
                         let enabled = has_photo || choice == Choice::Ask(Purpose::OpenPhoto);
                         let item = ui.add_enabled(enabled, egui::Button::new(name));
-                        mark(ui, name, &item);
+                        mark(ui, name, name, &item);
                         if item.clicked() {
                             command = Some(choice);
                         }
@@ -234,7 +258,7 @@ impl App {
                         recalled = last.cloned();
                     }
                 });
-                mark(ui, "File", &menu.response);
+                mark(ui, "File", "Photos, pictures and looks", &menu.response);
                 let Some((_, document)) = self.documents.get_mut(self.current) else { return };
                 let [undo, redo] = document.steps();
                 let button = egui::Button::new("Undo");
@@ -283,8 +307,9 @@ impl App {
             let strip = Panel::bottom(("export", index)).show(ui, |ui| {
                 ui.horizontal(|ui| {
                     ui.add(ProgressBar::new(export.part()).desired_width(220.0).text(export.step()));
-                    let cancel = ui.button("Cancel").on_hover_text("The file does not appear then");
-                    mark(ui, "Cancel writing", &cancel);
+                    let about = "The file does not appear then";
+                    let cancel = ui.button("Cancel").on_hover_text(about);
+                    mark(ui, "Cancel writing", about, &cancel);
                     ui.label(export.path.display().to_string());
                     cancel.clicked()
                 })
@@ -299,13 +324,15 @@ impl App {
     }
 }
 
+const AGAIN: &str = "Open it again";
+
 /// Photos to be opened again; which of them is.
 fn recent(ui: &mut Ui, photos: &[PathBuf]) -> Option<PathBuf> {
     let mut chosen = None;
     for path in photos {
         let name = path.display().to_string();
-        let link = ui.link(&name).on_hover_text("Open it again");
-        mark(ui, &name, &link);
+        let link = ui.link(&name).on_hover_text(AGAIN);
+        mark(ui, &name, AGAIN, &link);
         if link.clicked() {
             chosen = Some(path.clone());
         }
@@ -314,8 +341,10 @@ fn recent(ui: &mut Ui, photos: &[PathBuf]) -> Option<PathBuf> {
 }
 
 /// Notes where something to click is, for scripts.
-fn mark(ui: &Ui, name: &str, what: &Response) {
-    ui.data_mut(|data| data.insert_temp(place(name), what.rect));
+fn mark(ui: &Ui, name: &str, about: &str, what: &Response) {
+    let (name, about, rect) = (name.to_owned(), about.to_owned(), what.rect);
+    let (span, reset) = (String::new(), String::new());
+    control::tell(ui, Told { name, about, span, reset, label: rect, rect, part: rect });
 }
 
 /// What the menu and its keys can ask for.
@@ -360,6 +389,14 @@ fn command(document: &Document) -> Result<String> {
     let file = document.file.as_ref().filter(|file| file.look == document.look);
     let output = likely(document, Purpose::SavePicture);
     command_line(&document.look, &document.path, &output, file.map(|file| file.path.as_path()))
+}
+
+fn preference(theme: Theme) -> ThemePreference {
+    match theme {
+        Theme::System => ThemePreference::System,
+        Theme::Light => ThemePreference::Light,
+        Theme::Dark => ThemePreference::Dark,
+    }
 }
 
 fn modified(path: &Path) -> Option<SystemTime> {

@@ -1,6 +1,6 @@
-//! Lights as handles, the ghosts of the one that is selected, and the axis.
+//! Lights and placed ghosts as handles, the ghosts of the light that is selected, and the axis.
 
-use egui::{Color32, CursorIcon, Painter, Pos2, Rect, Response, Sense, Stroke, Ui, vec2};
+use egui::{Color32, CursorIcon, Painter, Pos2, Rect, Response, Sense, Shape, Stroke, StrokeKind, Ui, vec2};
 use glam::DVec2;
 
 use crate::viewer::document::Document;
@@ -20,8 +20,43 @@ pub fn show(ui: &mut Ui, document: &mut Document, placement: &Placement) {
     if let Some(selected) = document.selected {
         ghosts(&painter, document, placement, selected);
     }
+    for index in 0..document.look.ghosts.len() {
+        placed(ui, &painter, document, placement, index);
+    }
     for index in 0..document.lights().len() {
         light(ui, &painter, document, placement, index);
+    }
+}
+
+/// A ghost that no light makes: a square, and of the one that is selected the ellipse of its size.
+fn placed(ui: &mut Ui, painter: &Painter, document: &mut Document, placement: &Placement, index: usize) {
+    let center = document.look.ghosts[index].center;
+    let response = handle(ui, placement, placement.to_screen(document.place(center)), ("ghost", index));
+    if response.clicked() || response.drag_started() {
+        document.select_ghost(index);
+    }
+    if let Some(moved) = moved(&response, placement, document.frame.pixel_size()) {
+        document.look.ghosts[index].center += moved;
+    }
+    let ghost = &document.look.ghosts[index];
+    let at = placement.to_screen(document.place(ghost.center));
+    let chosen = document.selected_ghost.as_ref().is_some_and(|&(selected, _)| selected == index);
+    let response = response.on_hover_text(format!("Ghost {}, which no light makes: drag to move it", index + 1));
+    let width = if chosen || response.hovered() { 3.0 } else { 1.5 };
+    let bright = if chosen { Color32::YELLOW } else { Color32::WHITE };
+    let square = Rect::from_center_size(at, vec2(1.7, 1.7) * RADIUS);
+    painter.rect_stroke(square, 0.0, Stroke::new(width + 2.0, shade()), StrokeKind::Middle);
+    painter.rect_stroke(square, 0.0, Stroke::new(width, bright), StrokeKind::Middle);
+    painter.circle_filled(at, 2.5, colour(ghost.radiance));
+    if chosen {
+        // Half picture heights in points.
+        let scale = 1.0 / (document.frame.pixel_size() * placement.pitch * placement.scale);
+        let radius = (scale * document.look.size * ghost.size).as_vec2();
+        painter.add(Shape::ellipse_stroke(
+            at,
+            vec2(radius.x, radius.y),
+            Stroke::new(1.0, Color32::from_white_alpha(120)),
+        ));
     }
 }
 
@@ -47,7 +82,7 @@ fn light(ui: &mut Ui, painter: &Painter, document: &mut Document, placement: &Pl
     let at = placement.to_screen(document.place(document.lights()[index].position));
     let response = handle(ui, placement, at, index);
     if response.clicked() || response.drag_started() {
-        document.selected = Some(index);
+        document.select(index);
     }
     if let Some(moved) = moved(&response, placement, document.frame.pixel_size()) {
         document.lights_mut()[index].position += moved;

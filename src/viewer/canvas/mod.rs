@@ -49,7 +49,7 @@ pub fn show(ui: &mut Ui, document: &mut Document, stage: &Stage, screen: [u32; 2
         ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
     }
     if canvas.clicked() {
-        document.selected = None;
+        (document.selected, document.selected_ghost) = (None, None);
     }
     if canvas.double_clicked() {
         document.viewing.zoom = match document.viewing.zoom {

@@ -4,7 +4,11 @@
 use glam::DVec2;
 
 use super::{Look, LookLens, LookLights};
-use crate::scene::{LensGhost, Light};
+use crate::scene::{Ghost, LensGhost, Light};
+use crate::series::{Bell, SineGaussian, VonMises};
+
+/// The period that a bell which is periodic itself begins with, in half picture heights, where the look has none.
+const PERIOD: DVec2 = DVec2::splat(4.0);
 
 impl Look {
     /// The lights as a list to be edited, of which `found` are the photo's.
@@ -80,6 +84,7 @@ impl Look {
     pub fn set_lens_ghost(&mut self, index: usize, ghost: LensGhost) {
         if index < self.lens.ghosts().len() {
             self.lens_mut()[index] = ghost;
+            self.name_period();
         }
     }
 
@@ -93,6 +98,68 @@ impl Look {
         let rows = self.lens.ghosts().len();
         if index < rows && rows > 1 {
             self.lens_mut().remove(index);
+        }
+    }
+
+    /// Replaces a ghost that no light makes.
+    pub fn set_ghost(&mut self, index: usize, ghost: Ghost) {
+        if let Some(old) = self.ghosts.get_mut(index) {
+            *old = ghost;
+            self.name_period();
+        }
+    }
+
+    /// Takes a ghost away that no light makes.
+    pub fn delete_ghost(&mut self, index: usize) {
+        if index < self.ghosts.len() {
+            self.ghosts.remove(index);
+        }
+    }
+
+    fn bells(&self) -> impl Iterator<Item = &Bell> {
+        let placed = self.ghosts.iter().map(|ghost| &ghost.bell);
+        self.lens.ghosts().iter().map(|ghost| &ghost.bell).chain(placed)
+    }
+
+    /// The period of the bells that are periodic themselves, if there are any.
+    fn own_period(&self) -> Option<DVec2> {
+        self.bells().find_map(|bell| bell.shape().period())
+    }
+
+    /// Whether there are bells that are periodic themselves: then the period is set by hand.
+    pub fn has_periodic_bells(&self) -> bool {
+        self.own_period().is_some()
+    }
+
+    /// The period that a bell which is periodic itself has in this look.
+    pub fn bell_period(&self) -> DVec2 {
+        self.accuracy.period.or(self.own_period()).unwrap_or(PERIOD)
+    }
+
+    /// A file names the period of its bells once, as the series'.
+    fn name_period(&mut self) {
+        self.accuracy.period = self.accuracy.period.or(self.own_period());
+    }
+
+    /// Sets the series' period, > 0, or leaves it to the plan, which cannot be where a bell is periodic itself. Such bells
+    /// have the same period.
+    pub fn set_period(&mut self, period: Option<DVec2>) {
+        let Some(period) = period else {
+            if !self.has_periodic_bells() {
+                self.accuracy.period = None;
+            }
+            return;
+        };
+        self.accuracy.period = Some(period);
+        let set = |bell: &mut Bell| match bell {
+            Bell::VonMises(VonMises { period: own }) | Bell::SineGaussian(SineGaussian { period: own, .. }) => {
+                *own = period;
+            }
+            _ => {}
+        };
+        self.ghosts.iter_mut().for_each(|ghost| set(&mut ghost.bell));
+        if self.lens.ghosts().iter().any(|ghost| ghost.bell.shape().period().is_some()) {
+            self.lens_mut().iter_mut().for_each(|ghost| set(&mut ghost.bell));
         }
     }
 }
@@ -149,6 +216,26 @@ mod tests {
         let row = look.lens.ghosts()[0].clone();
         look.set_lens_ghost(99, row);
         assert_eq!(look, Look::default());
+    }
+
+    #[test]
+    fn periodic_bells_have_the_looks_period() {
+        let mut look = Look::default();
+        let bell = Bell::VonMises(VonMises { period: look.bell_period() });
+        let ghost = LensGhost { bell: bell.clone(), ..look.lens.ghosts()[0].clone() };
+        look.set_lens_ghost(0, ghost);
+        look.ghosts.push(Ghost { bell, center: DVec2::ZERO, size: DVec2::ONE, radiance: [1.0; 3] });
+        assert_eq!(look.accuracy.period, Some(PERIOD));
+        let period = DVec2::new(5.0, 3.0);
+        look.set_period(Some(period));
+        let periods: Vec<_> = look.bells().filter_map(|bell| bell.shape().period()).collect();
+        assert_eq!((periods, look.accuracy.period), (vec![period; 2], Some(period)));
+        look.set_period(None);
+        assert_eq!(look.accuracy.period, Some(period), "a file has to name it");
+        look.delete_ghost(0);
+        look.set_lens_ghost(0, LensGhost { bell: Bell::Gaussian, ..look.lens.ghosts()[0].clone() });
+        look.set_period(None);
+        assert_eq!(look.accuracy.period, None);
     }
 
     #[test]

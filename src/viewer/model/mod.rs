@@ -9,6 +9,6 @@ mod state;
 pub use change::{Work, work};
 pub use command::command_line;
 pub use history::History;
-pub use state::State;
+pub use state::{State, Theme};
 
 pub use crate::look::{Accuracy, Look, LookLens, LookLights};

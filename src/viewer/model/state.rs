@@ -1,5 +1,5 @@
 //! What the window remembers from one time to the next, in the user's state folder: the last look, the photos that were
-//! opened last, and the window's size.
+//! opened last, the window's size, and its theme.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -19,6 +19,20 @@ pub const MOST_RECENT: usize = 12;
 const LOOK: &str = "look.toml";
 const RECENT: &str = "recent.json";
 const WINDOW: &str = "window.json";
+const THEME: &str = "theme.json";
+
+/// The window's colours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Theme {
+    /// As the desktop has them.
+    #[default]
+    System,
+    /// Light ones.
+    Light,
+    /// Dark ones.
+    Dark,
+}
 
 /// The folder.
 #[derive(Debug, Clone, PartialEq)]
@@ -113,6 +127,20 @@ impl State {
         size.iter().all(|side| (100..=16384).contains(side)).then_some(size)
     }
 
+    /// Keeps the window's theme.
+    ///
+    /// # Errors
+    /// [`Error::Write`] where the folder cannot be made or the file cannot be written.
+    pub fn keep_theme(&self, theme: Theme) -> Result<()> {
+        target::write_json(&self.place(THEME)?, &theme, true)
+    }
+
+    /// The window's theme, if one was kept that is known.
+    pub fn theme(&self) -> Option<Theme> {
+        let text = std::fs::read_to_string(self.folder.join(THEME)).ok()?;
+        serde_json::from_str(&text).ok()
+    }
+
     /// A file in the folder, which is made if need be.
     fn place(&self, name: &str) -> Result<PathBuf> {
         let path = self.folder.join(name);
@@ -172,6 +200,18 @@ mod tests {
         assert_eq!(state.size(), Some([1000, 700]));
         state.keep_size([1000, 0]).unwrap();
         assert_eq!(state.size(), None);
+    }
+
+    #[test]
+    fn the_theme_is_kept_where_it_is_known() {
+        let (_folder, state) = state();
+        assert_eq!(state.theme(), None);
+        for theme in [Theme::Light, Theme::System, Theme::Dark] {
+            state.keep_theme(theme).unwrap();
+            assert_eq!(state.theme(), Some(theme));
+        }
+        std::fs::write(state.folder.join(THEME), "\"sepia\"").unwrap();
+        assert_eq!(state.theme(), None);
     }
 
     #[test]

@@ -3,17 +3,17 @@
 use egui::{Grid, RichText, Ui, vec2};
 
 use super::by_hand;
-use crate::plan::Plan;
+use crate::plan::{Plan, Source};
 use crate::scene::Goal;
-use crate::viewer::control::Number;
+use crate::viewer::control::{Number, buttons, flag, hint};
 use crate::viewer::document::Document;
 use crate::viewer::stage::Stage;
 use crate::viewer::study::{DECADES, colour};
 
 const TOLERANCES: Number = Number {
     name: "Tolerance",
-    about: "Largest error at any pixel, relative to the largest glare of the same colour.",
-    unit: "",
+    about: "Largest error at any pixel, as a part of the largest glare of the same colour.",
+    unit: "of the largest",
     range: 1e-6..=0.1,
     logarithmic: true,
 };
@@ -29,6 +29,9 @@ const BUDGETS: Number = Number {
 /// What a budget begins with, in milliseconds.
 const BUDGET: f64 = 50.0;
 const TOLERANCE: f64 = 1e-3;
+
+const GOALS: [(bool, &str, &str); 2] =
+    [(false, "Tolerance", "the cheapest plan within an error"), (true, "Budget", "the most exact plan within a time")];
 
 /// Shows the panel.
 pub fn show(ui: &mut Ui, document: &mut Document, stage: &Stage) {
@@ -50,32 +53,34 @@ pub fn show(ui: &mut Ui, document: &mut Document, stage: &Stage) {
 }
 
 fn goal(ui: &mut Ui, document: &mut Document) {
-    let opened = document.opened.accuracy.goal;
+    let opened = document.opened.accuracy;
     let goal = &mut document.look.accuracy.goal;
-    ui.horizontal(|ui| {
-        let tolerance = ui.radio(goal.budget().is_none(), "Tolerance");
-        if tolerance.on_hover_text("The cheapest plan within an error").clicked() && goal.budget().is_some() {
-            *goal = Goal::Tolerance(TOLERANCE);
-        }
-        let budget = ui.radio(goal.budget().is_some(), "Budget");
-        if budget.on_hover_text("The most exact plan within a time").clicked() && goal.budget().is_none() {
-            *goal = Goal::Budget(BUDGET);
-        }
-    });
-    match (goal, opened) {
+    let mut by_budget = goal.budget().is_some();
+    let about = "What the plan is to reach.";
+    buttons(ui, "Goal", about, &mut by_budget, &GOALS, opened.goal.budget().is_some());
+    if by_budget != goal.budget().is_some() {
+        // Back to what it was opened with, where that is of the kind.
+        *goal = match (by_budget, opened.goal) {
+            (true, Goal::Tolerance(_)) => Goal::Budget(BUDGET),
+            (false, Goal::Budget(_)) => Goal::Tolerance(TOLERANCE),
+            (_, opened) => opened,
+        };
+    }
+    match (goal, opened.goal) {
         (Goal::Tolerance(tolerance), Goal::Tolerance(reset)) => TOLERANCES.show(ui, tolerance, reset),
         (Goal::Tolerance(tolerance), Goal::Budget(_)) => TOLERANCES.show(ui, tolerance, TOLERANCE),
         (Goal::Budget(budget), opened) => BUDGETS.show(ui, budget, opened.budget().unwrap_or(BUDGET)),
     };
-    ui.checkbox(&mut document.look.accuracy.allow_floor, "Allow the floor")
-        .on_hover_text("Where 32-bit floats cannot be as exact as asked, be as exact as they can");
+    let about = "Where 32-bit floats cannot be as exact as asked, be as exact as they can.";
+    flag(ui, "Allow floor", about, &mut document.look.accuracy.allow_floor, opened.allow_floor);
 }
 
 /// The error that was measured, and where it may be looked at.
 fn measured(ui: &mut Ui, document: &mut Document, stage: &Stage) {
     let wanted = &mut document.viewing.wanted;
-    ui.checkbox(&mut wanted.certificate, "Measure the error")
-        .on_hover_text("Against the direct sum in f64, at some hundred pixels, once nothing has moved for 0.3 s");
+    let about =
+        "Measures the error against the direct sum in f64, at some hundred pixels, once nothing has moved for 0.3 s.";
+    flag(ui, "Measure", about, &mut wanted.certificate, true);
     let text = match stage.known().certificate() {
         _ if !wanted.certificate => None,
         Some(found) if found.measured <= found.predicted => {
@@ -91,9 +96,8 @@ fn measured(ui: &mut Ui, document: &mut Document, stage: &Stage) {
     if let Some(text) = text {
         ui.label(text);
     }
-    ui.checkbox(&mut wanted.error_map, "Error in false colours").on_hover_text(
-        "|field − direct sum| over the picture, the worst colour; coarse at first, then up to 160 000 pixels",
-    );
+    let about = "|field − direct sum| over the picture, the worst colour; coarse at first, then up to 160 000 pixels.";
+    flag(ui, "False colours", about, &mut wanted.error_map, false);
     if wanted.error_map {
         legend(ui);
     }
@@ -112,30 +116,20 @@ fn legend(ui: &mut Ui) {
     }
     ui.horizontal(|ui| {
         ui.set_max_width(width);
-        ui.small("0.0001");
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.small("1 × tolerance"));
+        hint(ui, "0.0001");
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| hint(ui, "1 × tolerance"));
     });
-    ui.small("magenta: beyond the tolerance");
+    hint(ui, "magenta: beyond the tolerance");
 }
 
 /// Every line of the predicted error.
 fn prediction(ui: &mut Ui, plan: &Plan) {
-    let predicted = &plan.predicted;
-    let lines = [
-        ("ghosts left out", "Too faint to reach the picture", predicted.dropped),
-        ("periodisation", "Copies of the bells, a period away", predicted.periodisation),
-        ("truncation", "Harmonics that are left out", predicted.truncation),
-        ("interpolation", "Between the lattice's nodes", predicted.interpolation),
-        ("gathering", "Moments of cells that are left out", predicted.gathering),
-        ("rounding", "32-bit floats while they compute", predicted.rounding),
-        ("storage", "32-bit floats as passes leave them to each other", predicted.storage),
-    ];
     Grid::new("prediction").num_columns(2).striped(true).show(ui, |ui| {
         ui.strong("predicted error").on_hover_text("At most, relative to the largest glare of the same colour");
-        ui.strong(format!("{:.1e}", predicted.total()));
+        ui.strong(format!("{:.1e}", plan.predicted.total()));
         ui.end_row();
-        for (name, about, error) in lines {
-            ui.label(name).on_hover_text(about);
+        for Source { name, about, error } in plan.predicted.sources() {
+            ui.label(name).on_hover_text(format!("from {about}"));
             ui.label(if error > 0.0 { format!("{error:.1e}") } else { "0".into() });
             ui.end_row();
         }

@@ -1,17 +1,18 @@
 //! What counts as a light, the list of lights, and the one that is selected.
 
-use egui::{DragValue, Ui};
+use egui::{Align, ScrollArea, Ui};
 use glam::DVec2;
 
+use super::{colour, ghosts};
 use crate::scene::Light;
-use crate::viewer::control::Number;
+use crate::viewer::control::{self, Number, button, cell, done_by, flag};
 use crate::viewer::document::Document;
 use crate::viewer::model::LookLights;
 use crate::viewer::stage::Stage;
 
 const THRESHOLD: Number = Number {
     name: "Threshold",
-    about: "The luminance from which on a pixel is light.",
+    about: "The luminance from which on a pixel is light; what it takes is marked on the picture meanwhile.",
     unit: "in the photo's unit",
     range: 0.0..=1e6,
     logarithmic: true,
@@ -33,44 +34,66 @@ const MOST: Number = Number {
     logarithmic: true,
 };
 
+const PLACE: [Number; 2] = [place("Light x"), place("Light y")];
+
+const EXTENT: Number = Number {
+    name: "Extent",
+    about: "The light's rms radius along one axis; 0 is a point.",
+    unit: "half picture heights",
+    range: 0.0..=1e6,
+    logarithmic: false,
+};
+
+const FLUX: [Number; 3] = [flux("Flux red"), flux("Flux green"), flux("Flux blue")];
+
+const fn place(name: &'static str) -> Number {
+    Number {
+        name,
+        about: "Where the light is, from the picture's centre; it may be off the picture.",
+        unit: "half picture heights",
+        range: -1e6..=1e6,
+        logarithmic: false,
+    }
+}
+
+const fn flux(name: &'static str) -> Number {
+    Number {
+        name,
+        about: "The light's radiance times its area.",
+        unit: "in the photo's unit times half picture heights squared",
+        range: 0.0..=1e12,
+        logarithmic: false,
+    }
+}
+
+/// The most height that the list of lights takes, in points.
+const LIST: f32 = 192.0;
+
 /// Shows the panel.
 pub fn show(ui: &mut Ui, document: &mut Document, _: &Stage) {
     find(ui, document);
     ui.separator();
     ui.horizontal(|ui| {
-        if ui
-            .button("Add")
-            .on_hover_text("A white light in the picture's centre, as bright as the faintest here")
-            .clicked()
-        {
+        let about = "Adds a white light in the picture's centre, as bright as the faintest here";
+        if button(ui, "Add a light", about) {
             let light = another(document.lights());
-            document.selected = Some(document.lights().len());
             document.lights_mut().push(light);
+            document.select(document.lights().len() - 1);
         }
-        let back = ui.button("As found").on_hover_text("The lights that are found in the photo, where they are");
-        if back.clicked() {
+        if button(ui, "As found", "Goes back to the lights that are found in the photo, where they are") {
             document.look.lights = LookLights::Found;
             document.selected = None;
         }
     });
     let mut gone = None;
-    for index in 0..document.lights().len() {
-        let light = document.lights()[index];
-        ui.horizontal(|ui| {
-            let mut on = !light.muted;
-            if ui.checkbox(&mut on, "").on_hover_text("Whether it glares (M)").clicked() {
-                document.lights_mut()[index].muted = !on;
-            }
-            let text = format!("{}  {:.2e}", index + 1, flux(&light));
-            let row = ui.selectable_label(document.selected == Some(index), text);
-            if row.on_hover_text("Its flux: radiance times area, in half picture heights squared").clicked() {
-                document.selected = Some(index);
-            }
-            if ui.small_button("×").on_hover_text("Delete it (Delete)").clicked() {
+    // So many that they would leave no room for the rest have a part of the panel to be scrolled in.
+    ScrollArea::vertical().id_salt("lights").max_height(LIST).show(ui, |ui| {
+        for index in 0..document.lights().len() {
+            if row(ui, document, index) {
                 gone = Some(index);
             }
-        });
-    }
+        }
+    });
     if let Some(index) = gone {
         document.delete_light(index);
     }
@@ -78,6 +101,38 @@ pub fn show(ui: &mut Ui, document: &mut Document, _: &Stage) {
         ui.separator();
         selected(ui, document, index);
     }
+    ui.separator();
+    ghosts::show(ui, document);
+}
+
+/// A light in the list; whether it is to be deleted.
+fn row(ui: &mut Ui, document: &mut Document, index: usize) -> bool {
+    let (light, number) = (document.lights()[index], index + 1);
+    ui.horizontal(|ui| {
+        let (mut on, about) = (!light.muted, "Whether the light glares (M).");
+        let mut clicked = false;
+        let back = cell(ui, about, "on or off", format!("mute {number}"), "on", |ui| {
+            let mute = ui.checkbox(&mut on, "");
+            clicked = mute.clicked();
+            mute
+        });
+        if clicked || (back && light.muted) {
+            document.lights_mut()[index].muted = !on && !back;
+        }
+        let about = "Selects the light. Its flux is radiance times area, in half picture heights squared";
+        let text = format!("Light {number}:  {:.2e}", mean_flux(&light));
+        let chosen = document.selected == Some(index);
+        let label = ui.selectable_label(chosen, text);
+        if document.shows_light == Some(index) {
+            label.scroll_to_me(Some(Align::Center));
+            document.shows_light = None;
+        }
+        if done_by(ui, format!("light {number}"), about, |_| label) {
+            document.select(index);
+        }
+        done_by(ui, format!("delete {number}"), "Deletes the light (Delete)", |ui| ui.small_button("×"))
+    })
+    .inner
 }
 
 /// What counts as a light; the photo is searched anew while it is set.
@@ -85,13 +140,16 @@ fn find(ui: &mut Ui, document: &mut Document) {
     let (opened, found) = (document.opened.find, document.found.threshold);
     let find = &mut document.look.find;
     let mut automatic = find.threshold.is_none();
-    let tip = "Let the photo decide from which luminance on a pixel is light";
-    if ui.checkbox(&mut automatic, "Threshold by the photo").on_hover_text(tip).changed() {
+    let about = "Lets the photo decide from which luminance on a pixel is light.";
+    if flag(ui, "By the photo", about, &mut automatic, opened.threshold.is_none()) {
         find.threshold = (!automatic).then_some(found);
     }
     if let Some(threshold) = &mut find.threshold {
-        THRESHOLD.show(ui, threshold, opened.threshold.unwrap_or(found));
+        let row = THRESHOLD.show(ui, threshold, opened.threshold.unwrap_or(found));
+        document.sets_threshold = row.attended;
     }
+    let about = "Marks the pixels that are light by now, before the photo is searched (K).";
+    flag(ui, "Mask", about, &mut document.viewing.mask, false);
     MERGE.show(ui, &mut find.merge, opened.merge);
     let mut most = find.max_lights as f64;
     MOST.show(ui, &mut most, opened.max_lights as f64);
@@ -99,54 +157,41 @@ fn find(ui: &mut Ui, document: &mut Document) {
         find.max_lights = most.round() as usize;
     }
     let searching = if document.wants_search() { ", searching" } else { "" };
-    ui.label(format!("{} regions from {:.3e} on{searching}", document.found.regions, document.found.threshold));
+    let (regions, threshold) = (document.found.regions, control::brief(document.found.threshold));
+    let noun = if regions == 1 { "region" } else { "regions" };
+    control::hint(ui, format!("{regions} {noun} from {threshold} on{searching}"));
 }
 
-/// The numbers of one light.
+/// The numbers of one light; each goes back to what it was when the light was selected.
 fn selected(ui: &mut Ui, document: &mut Document, index: usize) {
     let weights = document.photo.luminance_weights();
-    let before = document.lights()[index];
-    let mut light = before;
-    ui.label(format!("Light {}", index + 1));
-    let mut cell = |name: &str, tip: &str, value: &mut f64, least: f64, speed: f64| {
-        ui.horizontal(|ui| {
-            ui.add_sized([74.0, 18.0], egui::Label::new(name)).on_hover_text(tip);
-            let number = DragValue::new(value).range(least..=1e12).clamp_existing_to_range(false);
-            ui.add(number.speed(speed).max_decimals(8)).on_hover_text(tip);
-        });
-    };
-    let place = "Where it is, in half picture heights from the centre; it may be off the picture";
-    cell("x", place, &mut light.position.x, -1e12, 0.002);
-    cell("y", place, &mut light.position.y, -1e12, 0.002);
-    cell("Extent", "Its rms radius along one axis, in half picture heights; 0 is a point", &mut light.size, 0.0, 0.001);
-    let flux = "Radiance times area, in the photo's unit times half picture heights squared";
-    for (name, part) in ["Red", "Green", "Blue"].into_iter().zip(&mut light.flux) {
+    let old = document.lights()[index];
+    let (mut light, before) = (old, document.light_before().unwrap_or(old));
+    ui.strong(format!("Light {}", index + 1));
+    PLACE[0].plain(ui, &mut light.position.x, before.position.x, 0.002);
+    PLACE[1].plain(ui, &mut light.position.y, before.position.y, 0.002);
+    EXTENT.plain(ui, &mut light.size, before.size, 0.001);
+    for ((number, part), before) in FLUX.iter().zip(&mut light.flux).zip(before.flux) {
         let speed = 0.01 * part.abs().max(1e-6);
-        cell(name, flux, part, 0.0, speed);
+        number.plain(ui, part, before, speed);
     }
-    if light != before {
+    let hue = colour::of_light(ui, &mut light.flux, before.flux);
+    if light != old {
         document.lights_mut()[index] = light;
     }
-    let most = light.flux.iter().fold(f64::MIN_POSITIVE, |a, &b| a.max(b));
-    let mut hue = light.flux.map(|part| (part / most) as f32);
-    ui.horizontal(|ui| {
-        ui.add_sized([74.0, 18.0], egui::Label::new("Hue"));
-        let button = ui.color_edit_button_rgb(&mut hue).on_hover_text("Its hue; its luminous flux stays");
-        if button.changed() {
-            let hue = hue.map(f64::from);
-            document.look.set_light_colour(&document.found.lights, index, hue, weights);
-        }
-    });
+    if let Some(hue) = hue {
+        document.look.set_light_colour(&document.found.lights, index, hue, weights);
+    }
 }
 
 /// The mean of a light's colours.
-fn flux(light: &Light) -> f64 {
+fn mean_flux(light: &Light) -> f64 {
     light.flux.iter().sum::<f64>() / 3.0
 }
 
 /// A point in the centre, as bright as the faintest light that there is.
 fn another(lights: &[Light]) -> Light {
-    let faintest = lights.iter().map(flux).fold(f64::INFINITY, f64::min);
+    let faintest = lights.iter().map(mean_flux).fold(f64::INFINITY, f64::min);
     let flux = if faintest.is_finite() { faintest } else { 1.0 };
     Light { position: DVec2::ZERO, flux: [flux; 3], size: 0.0, muted: false }
 }

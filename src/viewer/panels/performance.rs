@@ -3,6 +3,7 @@
 use egui::{Context, Grid, Id, Ui};
 use egui_plot::{Legend, Line, Plot, PlotPoints};
 
+use crate::viewer::control;
 use crate::viewer::document::Document;
 use crate::viewer::stage::{Stage, Times};
 
@@ -30,15 +31,13 @@ pub fn show(ui: &mut Ui, _: &mut Document, stage: &Stage) {
     passes(ui, stage);
     graph(ui, stage);
     plan(ui, stage);
-    ui.horizontal(|ui| {
-        let rate = stage.timings().frame_rate().map_or("–".to_owned(), |rate| format!("{rate:.0}"));
-        ui.label(format!("{rate} frames/s")).on_hover_text("While something last moved; an idle window draws nothing");
-        let mut waits = vsync(ui.ctx());
-        let tip = "Frames wait for the display (on), or come as fast as they can, and may tear (off); on at first";
-        if ui.checkbox(&mut waits, "vsync").on_hover_text(tip).changed() {
-            ui.data_mut(|data| data.insert_temp(vsync_id(), waits));
-        }
-    });
+    let rate = stage.timings().frame_rate().map_or("–".to_owned(), |rate| format!("{rate:.0}"));
+    ui.label(format!("{rate} frames/s")).on_hover_text("While something last moved; an idle window draws nothing");
+    let mut waits = vsync(ui.ctx());
+    let about = "Frames wait for the display, or come as fast as they can, and may tear.";
+    if control::flag(ui, "vsync", about, &mut waits, true) {
+        ui.data_mut(|data| data.insert_temp(vsync_id(), waits));
+    }
 }
 
 fn passes(ui: &mut Ui, stage: &Stage) {
@@ -69,13 +68,15 @@ fn graph(ui: &mut Ui, stage: &Stage) {
         .show_x(false)
         .x_axis_label("picture")
         .y_axis_label("ms")
-        .legend(Legend::default().position(egui_plot::Corner::LeftBottom).follow_insertion_order(true));
-    plot.show(ui, |plot| {
+        .legend(Legend::default().position(egui_plot::Corner::RightTop).follow_insertion_order(true));
+    let shown = plot.show(ui, |plot| {
         for (name, _, time) in PASSES {
             let points = stage.timings().pictures().enumerate().map(|(k, times)| [k as f64, time(times)]);
             plot.line(Line::new(name, points.collect::<PlotPoints<'_>>()).width(1.5));
         }
     });
+    let about = "Milliseconds of the last pictures; a click on a name in the legend hides its line.";
+    control::done_by(ui, "Times".into(), about, |_| shown.response);
 }
 
 fn plan(ui: &mut Ui, stage: &Stage) {

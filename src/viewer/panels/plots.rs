@@ -1,13 +1,16 @@
 //! The spectrum, a cross-section of the field, and how the error falls with the degree.
 
-use egui::{Color32, Image, RichText, Ui, vec2};
-use egui_plot::{HLine, Legend, Line, LineStyle, Plot as Chart, PlotPoints, Points, VLine};
+use egui::{Color32, Image, Rangef, Response, RichText, Ui, vec2};
+use egui_plot::{
+    AxisHints, ColorConflictHandling, Corner, HLine, Legend, Line, LineStyle, Plot as Chart, PlotPoints, Points, VLine,
+};
 
+use crate::viewer::control::{Number, brief, buttons, choice, done_by, hint};
 use crate::viewer::document::Document;
 use crate::viewer::stage::Stage;
 use crate::viewer::study::{CutPoint, Degree, Plot, SPECTRUM_DECADES};
 
-const HEIGHT: f32 = 190.0;
+const HEIGHT: f32 = 210.0;
 const CHOICES: [(Plot, &str, &str); 4] = [
     (Plot::Off, "Off", "Nothing is computed for plots"),
     (Plot::Spectrum, "Spectrum", "|A|, |B|, |C|, |D|, as they are on the device"),
@@ -15,13 +18,18 @@ const CHOICES: [(Plot, &str, &str); 4] = [
     (Plot::Convergence, "Degree", "The error that is predicted for other degrees"),
 ];
 
+const CUT: Number = Number {
+    name: "Cut at",
+    about: "Where the picture is cut, from the top or from the left.",
+    unit: "of the picture",
+    range: 0.0..=1.0,
+    logarithmic: false,
+};
+
 /// Shows the panel.
 pub fn show(ui: &mut Ui, document: &mut Document, stage: &Stage) {
-    ui.horizontal_wrapped(|ui| {
-        for (plot, name, about) in CHOICES {
-            ui.selectable_value(&mut document.viewing.wanted.plot, plot, name).on_hover_text(about);
-        }
-    });
+    let plot = &mut document.viewing.wanted.plot;
+    choice(ui, "Plot", "What is found out about the picture and drawn here.", plot, &CHOICES, Plot::Off);
     let shown = match document.viewing.wanted.plot {
         Plot::Off => return,
         Plot::Spectrum => spectrum(ui, stage),
@@ -47,38 +55,40 @@ fn spectrum(ui: &mut Ui, stage: &Stage) -> Option<()> {
             {
                 ui.vertical(|ui| {
                     ui.set_width(side);
-                    ui.small(name);
+                    hint(ui, name);
                     ui.add(Image::new(table).fit_to_exact_size(vec2(side, side)).maintain_aspect_ratio(false));
                 });
             }
         });
     }
-    ui.small(format!("n to the right, m upwards; dark is 1e−{SPECTRUM_DECADES} of the largest or less"));
+    hint(ui, format!("n to the right, m upwards; dark is 1e−{SPECTRUM_DECADES} of the largest or less"));
     Some(())
 }
 
 fn section(ui: &mut Ui, document: &mut Document, stage: &Stage) -> Option<()> {
     let cut = &mut document.viewing.wanted.cut;
-    ui.horizontal(|ui| {
-        ui.selectable_value(&mut cut.horizontal, true, "Row").on_hover_text("Along x");
-        ui.selectable_value(&mut cut.horizontal, false, "Column").on_hover_text("Along y");
-        ui.weak("drag the green line");
-    });
+    let about = "Which way the picture is cut; the green line over it can be dragged.";
+    buttons(ui, "Cut", about, &mut cut.horizontal, &[(true, "Row", "along x"), (false, "Column", "along y")], true);
+    CUT.show(ui, &mut cut.at, 0.5);
     let axis = if cut.horizontal { "x, half picture heights" } else { "y, half picture heights" };
     let points = stage.known().section()?;
     let scale = points.iter().flat_map(|point| point.exact).fold(0.0f64, |most, value| most.max(value.abs()));
-    let chart = chart("section").x_axis_label(axis).y_axis_label("field");
-    chart.legend(Legend::default().position(egui_plot::Corner::LeftBottom)).show(ui, |plot| {
+    // Powers of ten apart, the axis has numbers of few digits.
+    let power = if scale > 0.0 { scale.log10().floor() as i32 } else { 0 };
+    let unit = 10f64.powi(power);
+    let label = if power == 0 { "field".to_owned() } else { format!("field / 1e{power}") };
+    let shown = chart("section", axis, label, brief, Corner::RightTop).show(ui, |plot| {
         for (colour, (name, tint)) in COLOURS.into_iter().enumerate() {
-            plot.line(
-                Line::new(name, curve(points, |point| point.exact[colour])).color(tint.gamma_multiply(0.5)).width(4.0),
-            );
-            plot.line(Line::new(name, curve(points, |point| point.rendered[colour])).color(tint).width(1.0));
+            let exact = curve(points, |point| point.exact[colour] / unit);
+            plot.line(Line::new(name, exact).color(tint.gamma_multiply(0.4)).width(5.0));
+            let rendered = curve(points, |point| point.rendered[colour] / unit);
+            plot.line(Line::new(name, rendered).color(tint).width(1.5));
         }
     });
+    explain(ui, "Section plot", shown.response);
     let worst = points.iter().map(error).fold(0.0f64, f64::max);
     let part = if scale > 0.0 { worst / scale } else { 0.0 };
-    ui.small(format!("thin: rendered; wide: direct sum in f64; at most {part:.1e} of the largest apart"));
+    hint(ui, format!("Thin: rendered; wide: direct sum in f64. At most {part:.1e} of the largest apart."));
     Some(())
 }
 
@@ -108,9 +118,10 @@ fn convergence(ui: &mut Ui, stage: &Stage) -> Option<()> {
     let points = |error: fn(&Degree) -> f64| -> PlotPoints<'static> {
         degrees.iter().map(|degree| [f64::from(degree.degree), decades(error(degree))]).collect()
     };
-    let power = |mark: egui_plot::GridMark, _: &_| format!("1e{}", mark.value.round());
-    let chart = chart("convergence").x_axis_label("degree").y_axis_label("error").y_axis_formatter(power);
-    chart.legend(Legend::default().position(egui_plot::Corner::LeftBottom)).show(ui, |plot| {
+    // Only whole powers: a mark between them would be told as one of its neighbours.
+    let power = |value: f64| if value.fract().abs() < 1e-6 { format!("1e{value}") } else { String::new() };
+    let chart = chart("convergence", "degree", "error".into(), power, Corner::LeftBottom);
+    let shown = chart.show(ui, |plot| {
         plot.line(Line::new("truncation", points(|degree| degree.truncation)));
         plot.points(Points::new("all sources", points(|degree| degree.total)).radius(2.5));
         plot.hline(HLine::new("tolerance", decades(plan.tolerance)).style(LineStyle::dashed_loose()));
@@ -119,10 +130,25 @@ fn convergence(ui: &mut Ui, stage: &Stage) -> Option<()> {
             plot.vline(VLine::new("planned", degree).style(LineStyle::dashed_loose()));
         }
     });
-    ui.small("bounds of a series with the whole rectangle of modes, by rows, in the plan's period");
+    explain(ui, "Degree plot", shown.response);
+    hint(ui, "Bounds of a series with the whole rectangle of modes, by rows, in the plan's period.");
     Some(())
 }
 
-fn chart(name: &'static str) -> Chart<'static> {
-    Chart::new(name).height(HEIGHT).allow_scroll(false)
+/// A chart; `numbers` tells a mark of its vertical axis.
+fn chart(name: &'static str, x: &str, y: String, numbers: fn(f64) -> String, corner: Corner) -> Chart<'static> {
+    let legend = Legend::default().position(corner).follow_insertion_order(true);
+    // Of two lines of one name the thin one, drawn last, has the whole colour.
+    let legend = legend.color_conflict_handling(ColorConflictHandling::PickLast);
+    // Nearer than by default: there is not much room.
+    let horizontal = AxisHints::new_x().label(x.to_owned()).label_spacing(Rangef::new(24.0, 30.0));
+    let vertical = AxisHints::new_y().label(y).label_spacing(Rangef::new(12.0, 16.0));
+    let vertical = vertical.formatter(move |mark, _| numbers(mark.value)).min_thickness(44.0);
+    let chart = Chart::new(name).height(HEIGHT).allow_scroll(false).legend(legend);
+    chart.custom_x_axes(vec![horizontal]).custom_y_axes(vec![vertical])
+}
+
+fn explain(ui: &mut Ui, name: &str, response: Response) {
+    let about = "Drag to move it, drag with the secondary button to enlarge a part; a double click shows all of it.";
+    done_by(ui, name.to_owned(), about, |_| response);
 }

@@ -1,9 +1,9 @@
 //! How the picture is looked at.
 
-use egui::{ComboBox, Ui};
+use egui::{ThemePreference, Ui};
 
 use crate::photo::ToneMap;
-use crate::viewer::control::Number;
+use crate::viewer::control::{Number, buttons, choice, flag};
 use crate::viewer::document::Document;
 use crate::viewer::stage::Stage;
 use crate::viewer::viewing::{MOST_EXPOSURE, Shows};
@@ -16,37 +16,56 @@ const EXPOSURE: Number = Number {
     logarithmic: false,
 };
 
-const TONE_MAPS: [(ToneMap, &str); 4] =
-    [(ToneMap::None, "none"), (ToneMap::Reinhard, "Reinhard"), (ToneMap::Aces, "ACES"), (ToneMap::Agx, "AgX")];
+const WIPE: Number = Number {
+    name: "Wipe at",
+    about: "Where the line of the wipe is, from the left.",
+    unit: "of the canvas's width",
+    range: 0.0..=1.0,
+    logarithmic: false,
+};
+
+/// Where a wipe begins.
+const MIDDLE: f64 = 0.5;
+
+const TONE_MAPS: [(ToneMap, &str, &str); 4] = [
+    (ToneMap::None, "none", "Clips at 0 and 1"),
+    (ToneMap::Reinhard, "Reinhard", "v / (1 + v) of each colour; flattens contrast"),
+    (ToneMap::Aces, "ACES", "Film-like and contrasty; strong colours burn to white"),
+    (ToneMap::Agx, "AgX", "Soft and wide; takes bright colours gently to white"),
+];
+
+const SHOWS: [(Shows, &str, &str); 3] = [
+    (Shows::Picture, "After", "the photo with its glare"),
+    (Shows::Photo, "Before", "the photo as it was (B)"),
+    (Shows::Glare, "Glare", "the glare alone, what is added (G)"),
+];
+
+const THEMES: [(ThemePreference, &str, &str); 3] = [
+    (ThemePreference::System, "system", "as the desktop has it"),
+    (ThemePreference::Light, "light", "dark letters on light panels"),
+    (ThemePreference::Dark, "dark", "light letters on dark panels"),
+];
 
 /// Shows the panel.
 pub fn show(ui: &mut Ui, document: &mut Document, _: &Stage) {
     let viewing = &mut document.viewing;
     EXPOSURE.show(ui, &mut viewing.exposure, 0.0);
-    ui.horizontal(|ui| {
-        ui.add_sized([74.0, 18.0], egui::Label::new("Tone map"));
-        let name = TONE_MAPS.iter().find(|(map, _)| *map == viewing.tone_map).map_or("", |(_, name)| name);
-        ComboBox::from_id_salt("tone map").selected_text(name).show_ui(ui, |ui| {
-            for (map, name) in TONE_MAPS {
-                ui.selectable_value(&mut viewing.tone_map, map, name);
-            }
-        });
-    });
-    ui.horizontal_wrapped(|ui| {
-        ui.selectable_value(&mut viewing.shows, Shows::Picture, "With glare");
-        ui.selectable_value(&mut viewing.shows, Shows::Photo, "Before").on_hover_text("The photo as it was (B)");
-        ui.selectable_value(&mut viewing.shows, Shows::Glare, "Glare alone").on_hover_text("What is added (G)");
-    });
-    ui.horizontal_wrapped(|ui| {
-        let mut wipe = viewing.wipe.is_some();
-        if ui
-            .checkbox(&mut wipe, "Wipe")
-            .on_hover_text("Before on the left, after on the right of a line (W)")
-            .clicked()
-        {
-            viewing.wipe = wipe.then_some(0.5);
-        }
-        ui.checkbox(&mut viewing.handles, "Handles").on_hover_text("The lights and the axis over the picture (L)");
-        ui.checkbox(&mut viewing.loupe, "Loupe").on_hover_text("Pixels and their values at the pointer (I)");
-    });
+    let about = "How light comes into the display's range (T); of the view only.";
+    choice(ui, "Tone map", about, &mut viewing.tone_map, &TONE_MAPS, ToneMap::default());
+    buttons(ui, "Shows", "What is seen.", &mut viewing.shows, &SHOWS, Shows::Picture);
+    let mut wipe = viewing.wipe.is_some();
+    if flag(ui, "Wipe", "Before on the left, after on the right of a line (W).", &mut wipe, false) {
+        viewing.wipe = wipe.then_some(MIDDLE);
+    }
+    if let Some(at) = &mut viewing.wipe {
+        WIPE.show(ui, at, MIDDLE);
+    }
+    flag(ui, "Handles", "The lights and the axis over the picture (L).", &mut viewing.handles, true);
+    flag(ui, "Loupe", "Pixels and their values at the pointer (I).", &mut viewing.loupe, false);
+    let mut theme = ui.ctx().options(|options| options.theme_preference);
+    let before = theme;
+    buttons(ui, "Theme", "The window's colours; remembered.", &mut theme, &THEMES, ThemePreference::System);
+    if theme != before {
+        ui.ctx().set_theme(theme);
+    }
 }
