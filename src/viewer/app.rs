@@ -3,6 +3,7 @@
 mod ask;
 mod device;
 mod files;
+mod menu;
 mod strips;
 
 use std::path::PathBuf;

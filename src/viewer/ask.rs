@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use egui::text::{CCursor, CCursorRange};
 use egui::{Context, Id, Key, Modal, TextEdit, Ui};
 
 /// What a path is for.
@@ -75,9 +76,15 @@ impl Ask {
         let [title, verb] = self.purpose.words();
         ui.set_width(420.0);
         ui.heading(title);
-        let field = ui.add(TextEdit::singleline(&mut self.text).desired_width(f32::INFINITY).hint_text("path"));
+        let edit = TextEdit::singleline(&mut self.text).desired_width(f32::INFINITY).hint_text("path");
+        let mut shown = edit.show(ui);
+        let field = shown.response.response;
         if !std::mem::replace(&mut self.led, true) {
             field.request_focus();
+            // What is typed replaces what was likely; a cursor key goes on from its end.
+            let all = CCursorRange::two(CCursor::default(), CCursor::new(self.text.chars().count()));
+            shown.state.cursor.set_char_range(Some(all));
+            shown.state.store(ui.ctx(), field.id);
         }
         let path = PathBuf::from(self.text.trim());
         let replaces = self.purpose.saves() && path.exists();

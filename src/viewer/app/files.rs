@@ -3,14 +3,14 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
-use egui::{CentralPanel, Key, Modifiers, Panel, ProgressBar, Response, ThemePreference, Ui};
+use egui::{CentralPanel, Panel, ProgressBar, ThemePreference, Ui};
 
 use super::App;
 use super::ask::{Questions, likely};
+use super::menu::{mark, recent};
 use crate::Result;
 use crate::scene::{read_scene, write_scene};
 use crate::viewer::ask::Purpose;
-use crate::viewer::control::{self, Told};
 use crate::viewer::document::Document;
 use crate::viewer::export::{Export, Subject};
 use crate::viewer::model::{Look, State, Theme, command_line};
@@ -33,11 +33,13 @@ pub struct Files {
     /// Where looks and recent photos are remembered, if anywhere.
     pub(super) state: Option<State>,
     /// The look of last time, and what is remembered by now.
-    last: Option<Look>,
+    pub(super) last: Option<Look>,
     pub(super) kept: Option<Look>,
     /// When that was, in egui's seconds.
     kept_at: f64,
-    recent: Vec<PathBuf>,
+    pub(super) recent: Vec<PathBuf>,
+    /// What was done last, until something else is to be done.
+    pub(super) done: Option<String>,
     /// The theme as it is remembered.
     theme: Option<Theme>,
 }
@@ -74,6 +76,11 @@ impl App {
     /// The photos that were opened last, the latest first.
     pub fn recent(&self) -> &[PathBuf] {
         &self.files.recent
+    }
+
+    /// What was saved or copied last, until something else is to be.
+    pub fn done(&self) -> Option<&str> {
+        self.files.done.as_deref()
     }
 
     /// Whether pictures are being written.
@@ -116,7 +123,10 @@ impl App {
     pub fn save_look(&mut self, path: &Path) {
         let Some(document) = self.document_mut() else { return };
         match write_scene(path, &document.look.to_scene(), true) {
-            Ok(()) => document.file = Some(LookFile::new(path, &document.look)),
+            Ok(()) => {
+                document.file = Some(LookFile::new(path, &document.look));
+                self.files.done = Some(format!("Saved {}", path.display()));
+            }
             Err(error) => self.notice(error.to_string()),
         }
     }
@@ -131,10 +141,13 @@ impl App {
     }
 
     /// Copies the command line that does what the window shows.
-    fn copy_command(&mut self) {
+    pub(super) fn copy_command(&mut self) {
         let Some(document) = self.document() else { return };
         match command(document) {
-            Ok(line) => self.context.copy_text(line),
+            Ok(line) => {
+                self.context.copy_text(line);
+                self.files.done = Some("Copied the command line".into());
+            }
             Err(error) => self.notice(error.to_string()),
         }
     }
@@ -204,6 +217,7 @@ impl App {
         for (path, result) in ended {
             match result {
                 Ok(warnings) => {
+                    self.files.done = Some(format!("Saved {}", path.display()));
                     warnings.into_iter().for_each(|text| self.notice(format!("{}: {text}", path.display())));
                 }
                 Err(crate::Error::Cancelled) => {}
@@ -223,65 +237,6 @@ impl App {
     pub(super) fn next_look(&self) -> Duration {
         let watched = self.document().is_some_and(|document| document.file.is_some());
         if watched { LOOK_AGAIN } else { Duration::MAX }
-    }
-
-    /// The bar at the top.
-    pub(super) fn bar(&mut self, ui: &mut Ui) {
-        let mut command = (!self.asks() && !ui.ctx().text_edit_focused()).then(|| pressed(ui)).flatten();
-        let (has_photo, mut recalled, mut again) = (self.document().is_some(), None, None);
-        Panel::top("bar").show(ui, |ui| {
-            ui.horizontal(|ui| {
-                let menu = ui.menu_button("File", |ui| {
-                    for (choice, name) in COMMANDS {
-                        let enabled = has_photo || choice == Choice::Ask(Purpose::OpenPhoto);
-                        let item = ui.add_enabled(enabled, egui::Button::new(name));
-                        mark(ui, name, name, &item);
-                        if item.clicked() {
-                            command = Some(choice);
-                        }
-                    }
-                    if !self.files.recent.is_empty() {
-                        ui.menu_button("Open again", |ui| again = recent(ui, &self.files.recent));
-                    }
-                    if self.files.questions.by_dialog() {
-                        ui.menu_button("Type a path…", |ui| {
-                            for (choice, name) in TYPED {
-                                let enabled = has_photo || choice == Purpose::OpenPhoto;
-                                if ui.add_enabled(enabled, egui::Button::new(name)).clicked() {
-                                    command = Some(Choice::Type(choice));
-                                }
-                            }
-                        });
-                    }
-                    let last = self.files.last.as_ref().filter(|_| has_photo);
-                    if last.is_some() && ui.button("Take the look of last time").clicked() {
-                        recalled = last.cloned();
-                    }
-                });
-                mark(ui, "File", "Photos, pictures and looks", &menu.response);
-                let Some((_, document)) = self.documents.get_mut(self.current) else { return };
-                let [undo, redo] = document.steps();
-                let button = egui::Button::new("Undo");
-                if ui.add_enabled(undo, button).on_hover_text("The last change of the look (Ctrl+Z)").clicked() {
-                    document.undo();
-                }
-                let button = egui::Button::new("Redo");
-                if ui.add_enabled(redo, button).on_hover_text("What was undone (Ctrl+Shift+Z)").clicked() {
-                    document.redo();
-                }
-            });
-        });
-        if let (Some(look), Some(document)) = (recalled, self.document_mut()) {
-            document.set_look(look);
-        }
-        again.into_iter().for_each(|path| self.open(path));
-        match command {
-            Some(Choice::Ask(purpose)) => self.ask(purpose, false),
-            Some(Choice::Type(purpose)) => self.ask(purpose, true),
-            Some(Choice::Copy) => self.copy_command(),
-            None => {}
-        }
-        self.answer();
     }
 
     /// What is there to begin with.
@@ -322,66 +277,6 @@ impl App {
             !strip.inner
         });
     }
-}
-
-const AGAIN: &str = "Open it again";
-
-/// Photos to be opened again; which of them is.
-fn recent(ui: &mut Ui, photos: &[PathBuf]) -> Option<PathBuf> {
-    let mut chosen = None;
-    for path in photos {
-        let name = path.display().to_string();
-        let link = ui.link(&name).on_hover_text(AGAIN);
-        mark(ui, &name, AGAIN, &link);
-        if link.clicked() {
-            chosen = Some(path.clone());
-        }
-    }
-    chosen
-}
-
-/// Notes where something to click is, for scripts.
-fn mark(ui: &Ui, name: &str, about: &str, what: &Response) {
-    let (name, about, rect) = (name.to_owned(), about.to_owned(), what.rect);
-    let (span, reset) = (String::new(), String::new());
-    control::tell(ui, Told { name, about, span, reset, label: rect, rect, part: rect });
-}
-
-/// What the menu and its keys can ask for.
-#[derive(Clone, Copy, PartialEq)]
-enum Choice {
-    Ask(Purpose),
-    /// The same by a path that is typed in the window.
-    Type(Purpose),
-    Copy,
-}
-
-const COMMANDS: [(Choice, &str); 6] = [
-    (Choice::Ask(Purpose::OpenPhoto), "Open a photo… (Ctrl+O)"),
-    (Choice::Ask(Purpose::SavePicture), "Save the picture… (Ctrl+S)"),
-    (Choice::Ask(Purpose::SaveGlare), "Save the glare…"),
-    (Choice::Ask(Purpose::OpenLook), "Open a look…"),
-    (Choice::Ask(Purpose::SaveLook), "Save the look… (Ctrl+Shift+S)"),
-    (Choice::Copy, "Copy the command line (Ctrl+Shift+C)"),
-];
-
-const TYPED: [(Purpose, &str); 5] = [
-    (Purpose::OpenPhoto, "Open a photo"),
-    (Purpose::SavePicture, "Save the picture"),
-    (Purpose::SaveGlare, "Save the glare"),
-    (Purpose::OpenLook, "Open a look"),
-    (Purpose::SaveLook, "Save the look"),
-];
-
-fn pressed(ui: &Ui) -> Option<Choice> {
-    let shift = Modifiers::COMMAND | Modifiers::SHIFT;
-    let keys = [
-        (shift, Key::S, Choice::Ask(Purpose::SaveLook)),
-        (shift, Key::C, Choice::Copy),
-        (Modifiers::COMMAND, Key::O, Choice::Ask(Purpose::OpenPhoto)),
-        (Modifiers::COMMAND, Key::S, Choice::Ask(Purpose::SavePicture)),
-    ];
-    ui.input_mut(|input| keys.into_iter().find(|&(with, key, _)| input.consume_key(with, key)).map(|(.., what)| what))
 }
 
 /// The command line for a document; its look file is named where it holds the look as it is.

@@ -130,7 +130,6 @@ impl Desk {
     /// Answers the window's question for a path.
     pub fn answer(&self, path: &Path) {
         self.until("a question", |status| status["asks"] == true);
-        self.key("ctrl+a");
         self.xdotool(&["type", "--delay", "1", path.to_str().unwrap()]);
         self.key("Return");
         self.until("an answer that is taken", |status| status["asks"] == false && status["busy"] == false);
