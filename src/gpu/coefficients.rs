@@ -133,6 +133,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     use super::*;
+    use crate::gpu::tests::turn;
     use crate::gpu::{Backend, Device};
     use crate::series::numeric::{Coefficients, Rule, Slips, sine_gaussian};
 
@@ -164,6 +165,7 @@ mod tests {
 
     #[test]
     fn the_gpu_gives_what_the_cpu_gives() {
+        let _turn = turn();
         for backend in Backend::ALL {
             let runner = Runner::new(&Device::open(&[backend]).expect("these tests need GL")).unwrap();
             // The notes' own; a count that is no multiple of four; several dispatches; the most that fits.
@@ -183,6 +185,7 @@ mod tests {
 
     #[test]
     fn what_does_not_fit_is_refused() {
+        let _turn = turn();
         let runner = Runner::new(&Device::open(&Backend::ALL).expect("these tests need GL")).unwrap();
         let mut pass = CoefficientsPass::new(&runner).unwrap();
         let how = Sampling { turns: 1, gain: 1.0 };

@@ -104,11 +104,13 @@ fn widest_line(gl: &glow::Context) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gpu::tests::turn;
     use crate::gpu::{Backend, Device};
 
     #[test]
     fn a_rising_line_runs_from_the_lower_left_to_the_upper_right() {
         const SIDE: u32 = 64;
+        let _turn = turn();
         for backend in Backend::ALL {
             let runner = Runner::new(&Device::open(&[backend]).expect("these tests need GL")).unwrap();
             let mut plot = LinesPass::new(&runner, [SIDE, SIDE], [-1.0, 1.0], [0.0, 10.0]).unwrap();

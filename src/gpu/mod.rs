@@ -48,4 +48,4 @@ pub use screen::{Region, Screen};
 pub use timer::PassTime;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

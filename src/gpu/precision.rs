@@ -98,8 +98,10 @@ fn worse(worst: &mut f64, value: f32, exact: f64, scale: f64) {
 mod tests {
     use super::*;
     use crate::gpu::Backend;
+    use crate::gpu::tests::turn;
 
     fn on_each_backend(test: impl Fn(&Runner) + Sync) {
+        let _turn = turn();
         for backend in Backend::ALL {
             std::thread::scope(|scope| {
                 let run = || test(&Runner::new(&Device::open(&[backend]).expect("these tests need GL")).unwrap());

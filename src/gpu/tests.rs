@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 use std::rc::Rc;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use bytemuck::{Pod, Zeroable as _};
 
@@ -15,8 +16,16 @@ use super::resource::Buffer;
 use super::runner::Runner;
 use super::shader::{self, Program};
 
+/// Lets one test at a time use GL. Mesa's software renderer looks through what all contexts of a process draw with, and
+/// does not lock it (`llvmpipe_flush_resource`, Mesa 22.3): two threads that draw may end the process.
+pub(crate) fn turn() -> MutexGuard<'static, ()> {
+    static TURN: Mutex<()> = Mutex::new(());
+    TURN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// Runs `test` on each backend, each with a thread of its own; no context is a failure.
 fn on_each_backend(test: impl Fn(&Rc<Device>) + Sync) {
+    let _turn = turn();
     for backend in Backend::ALL {
         std::thread::scope(|scope| {
             let thread = scope.spawn(|| test(&Device::open(&[backend]).expect("these tests need GL")));

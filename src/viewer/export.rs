@@ -101,6 +101,13 @@ fn write(photo: &Photo, look: &Look, subject: Subject, path: &Path, watch: &Prog
     let options = WriteOptions { overwrite: true, ..WriteOptions::default() };
     photo::check_target(path, photo, &options)?;
     let mut job = Job::new(look, photo.clone(), Stages::default())?;
+    // One at a time: they would share the device's memory, and contexts of Mesa's software renderer that are at work on two
+    // threads at once can end the process (`llvmpipe_flush_resource`, Mesa 22.3).
+    static TURN: Mutex<()> = Mutex::new(());
+    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+    if watch.cancelled() {
+        return Err(Error::Cancelled);
+    }
     let mut computer = look.renders().then(|| Device::open(&Backend::ALL).map(Computer::new)).transpose()?;
     let wanted = Wanted { glare: subject == Subject::Glare, ..Wanted::default() };
     job.compute(computer.as_mut(), wanted, watch)?;

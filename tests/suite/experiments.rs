@@ -6,6 +6,8 @@ use clap::Parser;
 use vglare::gpu::Backend;
 use vglare::rex::{Experiment, Field, Figure, Lab, Report};
 
+use crate::support::turn;
+
 #[derive(Parser)]
 struct Cli {
     #[command(subcommand)]
@@ -16,7 +18,11 @@ struct Cli {
 fn run(arguments: &str) -> Report {
     let words = std::iter::once("rex").chain(arguments.split_whitespace());
     let experiment = Cli::try_parse_from(words).unwrap_or_else(|error| panic!("{error}")).experiment;
-    std::thread::scope(|scope| scope.spawn(|| experiment.run(&mut Lab::new(&[Backend::Egl])).unwrap()).join().unwrap())
+    let run = || {
+        let _turn = turn();
+        experiment.run(&mut Lab::new(&[Backend::Egl])).unwrap()
+    };
+    std::thread::scope(|scope| scope.spawn(run).join().unwrap())
 }
 
 fn figure<'a>(report: &'a Report, stem: &str) -> &'a Figure {

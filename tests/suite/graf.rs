@@ -9,6 +9,7 @@ use vglare::series::special::{bessel_cubics, bessel_j};
 
 use crate::support::check::Worst;
 use crate::support::scenes::{Chance, every_pixel, positions};
+use crate::support::turn;
 
 const BELL: Paraboloid = Paraboloid { peak: 1.0, curvature: 4.0 };
 const RADIUS: f64 = 2.0;
@@ -18,6 +19,7 @@ fn on_each_backend(test: impl Fn(Backend, &mut GrafRenderer) + Sync) {
     for backend in Backend::ALL {
         std::thread::scope(|scope| {
             let thread = scope.spawn(|| {
+                let _turn = turn();
                 let device = Device::open(&[backend]).expect("these tests need GL");
                 test(backend, &mut GrafRenderer::new(&device).unwrap());
             });

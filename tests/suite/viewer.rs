@@ -17,6 +17,8 @@ use vglare::plan::Evaluator;
 use vglare::scene::Goal;
 use vglare::viewer::{App, Document, Shows};
 
+use crate::support::{Turn, turn};
+
 const SIZE: [u32; 2] = [900, 500];
 /// The key, as winit tells of it.
 const CTRL: Modifiers = Modifiers { ctrl: true, command: true, ..Modifiers::NONE };
@@ -29,14 +31,17 @@ struct Session {
     time: f64,
     due: Duration,
     copied: Vec<String>,
+    _turn: Turn,
 }
 
 impl Session {
     fn new() -> Self {
-        let device = Device::open(&Backend::ALL).unwrap();
+        let turn = turn();
+        // Pictures are written on EGL, beside the window's own context as under a real window.
+        let device = Device::open(&[Backend::OsMesa]).unwrap();
         let app = App::new(&device, Look::default(), Arc::new(|| {})).unwrap();
         let screen = Screen::hidden(&device, SIZE).unwrap();
-        Self { device, app, screen, time: 0.0, due: Duration::ZERO, copied: Vec::new() }
+        Self { device, app, screen, time: 0.0, due: Duration::ZERO, copied: Vec::new(), _turn: turn }
     }
 
     /// With a synthetic photo open.

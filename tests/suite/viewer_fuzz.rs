@@ -12,6 +12,8 @@ use vglare::photo::Photo;
 use vglare::viewer::Document;
 use vglare::viewer::replay::{Player, Step};
 
+use crate::support::turn;
+
 /// Frames of one seed, and what memory may grow by after the first seeds, in bytes.
 const FRAMES: usize = 100;
 const WARM_SEEDS: u64 = 2;
@@ -137,6 +139,7 @@ fn play(player: &mut Player, seed: u64) -> usize {
 fn random_input_breaks_nothing_and_memory_does_not_grow() {
     let asked = std::env::var("VGLARE_FUZZ_SECONDS").ok().and_then(|text| text.parse().ok());
     let started = Instant::now();
+    let _turn = turn();
     let device = Device::open(&Backend::ALL).unwrap();
     let mut player = Player::new(&device, Look::default(), [720, 440]).unwrap();
     let (mut frames, mut seed, mut warm) = (0, 0, None);

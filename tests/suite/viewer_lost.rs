@@ -9,6 +9,8 @@ use vglare::viewer::model::State;
 use vglare::viewer::replay::{Place, Player, Step};
 use vglare::viewer::{Document, Status};
 
+use crate::support::turn;
+
 /// A window on a lamp, with a folder in which it remembers things.
 fn opened(backend: Backend) -> (tempfile::TempDir, Player) {
     let folder = tempfile::tempdir().unwrap();
@@ -33,6 +35,7 @@ fn status(player: &mut Player) -> Status {
 
 #[test]
 fn the_window_looks_the_same_on_the_next_device() {
+    let _turn = turn();
     for backend in Backend::ALL {
         let (_folder, mut player) = opened(backend);
         let side = Place::Screen([5.0, 300.0]);
@@ -67,6 +70,7 @@ fn wait_for_the_studies(player: &mut Player) {
 
 #[test]
 fn a_drag_goes_on_and_its_look_is_kept_meanwhile() {
+    let _turn = turn();
     let (folder, mut player) = opened(Backend::ALL[0]);
     player.step(&Step::Move(Place::Light(0))).unwrap();
     player.step(&Step::Press).unwrap();

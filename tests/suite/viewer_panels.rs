@@ -17,6 +17,8 @@ use vglare::reference;
 use vglare::scene::Goal;
 use vglare::viewer::{App, Cut, Document, Plot, Told};
 
+use crate::support::{Turn, turn};
+
 const SIZE: [u32; 2] = [1000, 1500];
 /// Set, the golden pictures are written instead of compared with.
 const BLESS: &str = "VGLARE_BLESS_UI";
@@ -26,15 +28,17 @@ struct Session {
     screen: Screen,
     time: f64,
     due: Duration,
+    _turn: Turn,
 }
 
 impl Session {
     /// With a synthetic photo open, on a screen of so many pixels.
     fn of_size(size: [u32; 2]) -> Self {
+        let turn = turn();
         let device = Device::open(&Backend::ALL).unwrap();
         let app = App::new(&device, Look::default(), Arc::new(|| {})).unwrap();
         let screen = Screen::hidden(&device, size).unwrap();
-        let mut session = Self { app, screen, time: 0.0, due: Duration::ZERO };
+        let mut session = Self { app, screen, time: 0.0, due: Duration::ZERO, _turn: turn };
         session.app.add(Document::new(Path::new("lamp.exr"), lamp(), Look::default()));
         session.settle();
         session

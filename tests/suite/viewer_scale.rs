@@ -8,6 +8,8 @@ use vglare::photo::Photo;
 use vglare::viewer::replay::{Place, Player, Step};
 use vglare::viewer::{Document, Status};
 
+use crate::support::turn;
+
 fn opened(size: [u32; 2]) -> Player {
     let device = Device::open(&Backend::ALL).unwrap();
     let mut player = Player::new(&device, Look::default(), size).unwrap();
@@ -33,6 +35,7 @@ fn brightness(player: &mut Player, at: [f64; 2]) -> u32 {
 
 #[test]
 fn a_picture_is_the_same_at_every_scale() {
+    let _turn = turn();
     let mut expected = None;
     for scale in [1.0, 1.5, 2.0] {
         let mut player = opened([900.0, 600.0].map(|side: f32| (side * scale) as u32));
@@ -55,6 +58,7 @@ fn a_picture_is_the_same_at_every_scale() {
 
 #[test]
 fn another_scale_in_the_middle_of_a_drag_moves_nothing_by_itself() {
+    let _turn = turn();
     let mut player = opened([900, 600]);
     player.step(&Step::Move(Place::Light(0))).unwrap();
     player.step(&Step::Press).unwrap();

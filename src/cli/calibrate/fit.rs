@@ -130,6 +130,7 @@ mod tests {
     /// Times made of known constants give these back.
     #[test]
     fn the_fit_inverts_the_cost_model() {
+        let _turn = crate::gpu::tests::turn();
         let device = Device::open(&crate::gpu::Backend::ALL).expect("these tests need GL");
         let arms = Arms::new(&device).unwrap().all;
         let known = CostModel { bell: 3.0, strip: 19.0, interpolation: 11.0, ..CostModel::default() };

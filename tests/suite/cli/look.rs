@@ -8,6 +8,7 @@ use vglare::photo::{self, WriteOptions};
 use vglare::scene::read_scene;
 
 use super::Workplace;
+use crate::support::turn;
 
 /// Two lights and a lens whose numbers survive halving and doubling.
 const SCENE: &str = "\
@@ -67,6 +68,7 @@ fn a_look_file_needs_no_options() {
 fn a_look_gives_the_same_bytes_without_a_command_line() {
     let place = Workplace::new();
     let photo = place.photo("in.exr");
+    let _turn = turn();
     let device = Device::open(&Backend::ALL).unwrap_or_else(|error| panic!("this test needs GL: {error}"));
     let mut computer = Computer::new(device);
     for text in [

@@ -3,6 +3,10 @@
 pub mod check;
 pub mod scenes;
 
+use std::cell::RefCell;
+use std::rc::{Rc, Weak};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
 use vglare::frame::Frame;
 use vglare::gpu::{Backend, Device};
 use vglare::plan::{Evaluator, Plan, Request, plan};
@@ -17,9 +21,30 @@ pub fn on_each_backend<T: Send>(test: impl Fn(Backend, &mut Renderer) -> T + Syn
     Backend::ALL.into_iter().map(|backend| on_backend(backend, |renderer| test(backend, renderer))).collect()
 }
 
+/// A test's turn at GL, for as long as it is kept.
+pub type Turn = Rc<MutexGuard<'static, ()>>;
+
+/// Lets one test at a time use GL; a thread that has its turn gets it again. Mesa's software renderer looks through what
+/// all contexts of a process draw with, and does not lock it (`llvmpipe_flush_resource`, Mesa 22.3): two threads that draw
+/// may end the process.
+pub fn turn() -> Turn {
+    static TURN: Mutex<()> = Mutex::new(());
+    thread_local! {
+        static MINE: RefCell<Weak<MutexGuard<'static, ()>>> = RefCell::default();
+    }
+    MINE.with_borrow_mut(|mine| {
+        mine.upgrade().unwrap_or_else(|| {
+            let turn = Rc::new(TURN.lock().unwrap_or_else(PoisonError::into_inner));
+            *mine = Rc::downgrade(&turn);
+            turn
+        })
+    })
+}
+
 /// Runs `test` with a fresh renderer of one backend.
 pub fn on_backend<T: Send>(backend: Backend, test: impl FnOnce(&mut Renderer) -> T + Send) -> T {
     let run = || {
+        let _turn = turn();
         let device = Device::open(&[backend]).unwrap_or_else(|error| panic!("these tests need GL: {error}"));
         test(&mut Renderer::new(&device).unwrap())
     };
