@@ -205,8 +205,9 @@ fn kept_radial(radial: &dyn Radial, size: DVec2, error: f64) -> Result<Vec<u32>>
 }
 
 fn too_high(degree: f64) -> Error {
-    let needed = if degree.is_finite() { format!("of about {degree:.0}") } else { "beyond that".to_owned() };
+    let needed = if degree.is_finite() { format!("need one of about {degree:.0}") } else { "need more".to_owned() };
     Error::Plan(format!(
-        "these ghosts would need a degree {needed}, and {HIGHEST_DEGREE} is the highest; --evaluator direct has no degree"
+        "the highest degree of a series is {HIGHEST_DEGREE}, and these ghosts {needed}; the evaluator direct has no degree \
+         (--evaluator direct, or By hand)"
     ))
 }

@@ -9,7 +9,7 @@ use crate::viewer::document::Document;
 use crate::viewer::viewing::{Placement, Shows};
 
 /// The loupe's side and the text's height below it, in points.
-const SIDE: f32 = 160.0;
+const SIDE: f32 = 180.0;
 const TEXT: f32 = 48.0;
 /// The side of a pixel of the photo in it, in points.
 const PIXEL: f32 = 10.0;
@@ -99,5 +99,33 @@ fn words(document: &Document, probe: &Probe, before: bool) -> String {
     let map: ToneMap = document.viewing.tone_map;
     let codes = map.apply(light.map(|c| c * gain)).map(|c| (255.0 * srgb_encode(c)).round() as u8);
     let [column, row] = probe.pixel.map(|at| at * document.shrunk);
-    format!("column {column}, row {row}\nlinear  {r:.4} {g:.4} {b:.4}\ndisplay {} {} {}", codes[0], codes[1], codes[2])
+    let [r, g, b] = [r, g, b].map(digits);
+    format!("column {column}, row {row}\nlinear  {r} {g} {b}\ndisplay {} {} {}", codes[0], codes[1], codes[2])
+}
+
+/// At most six characters, so that three fit the loupe, and never more digits than four after the point.
+fn digits(value: f32) -> String {
+    let fits = |text: &String| text.len() <= 6;
+    (0..=4).rev().map(|places| format!("{value:.places$}")).find(fits).unwrap_or_else(|| format!("{value:.0e}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn three_numbers_fit_the_loupe_whatever_they_are() {
+        for (value, text) in [
+            (0.0312, "0.0312"),
+            (103.7879, "103.79"),
+            (-0.0456, "-0.046"),
+            (26_543.2, "26543"),
+            (-12_345_678.0, "-1e7"),
+            (f32::MAX, "3e38"),
+            (f32::NAN, "NaN"),
+            (f32::NEG_INFINITY, "-inf"),
+        ] {
+            assert_eq!(digits(value), text);
+        }
+    }
 }

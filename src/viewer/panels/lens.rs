@@ -1,5 +1,7 @@
 //! The lens's table: a row for each ghost that it makes of a light.
 
+use egui::scroll_area::ScrollBarVisibility;
+use egui::style::ScrollStyle;
 use egui::{Grid, ScrollArea, Sense, Ui};
 use glam::DVec2;
 
@@ -62,11 +64,10 @@ pub fn show(ui: &mut Ui, document: &mut Document) {
     }
     let before = document.lens_before.ghosts().to_vec();
     control::fold(ui, "Lens ghosts", "What the lens makes of each light, a row a ghost", |ui| {
-        ScrollArea::horizontal().show(ui, |ui| {
-            table(ui, &mut document.look, &before);
-            // The bar lies over what is at the bottom.
-            ui.add_space(8.0);
-        });
+        // Always seen: that there is more to the right is seen by nothing else.
+        ui.style_mut().spacing.scroll = ScrollStyle::solid();
+        let seen = ScrollBarVisibility::AlwaysVisible;
+        ScrollArea::horizontal().scroll_bar_visibility(seen).show(ui, |ui| table(ui, &mut document.look, &before));
         if control::button(ui, "Add a row", "A small ghost opposite the light") {
             document.look.add_lens_ghost(NEW);
         }
