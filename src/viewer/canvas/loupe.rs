@@ -59,6 +59,8 @@ pub fn show(
     painter.rect_filled(rect.with_min_y(glass.bottom()), 0.0, ui.visuals().panel_fill);
     painter.rect_stroke(rect, 0.0, Stroke::new(1.0, Color32::GRAY), StrokeKind::Outside);
     let middle = Rect::from_center_size(glass.center(), vec2(PIXEL, PIXEL));
+    // To be seen on white and on black.
+    painter.rect_stroke(middle, 0.0, Stroke::new(3.0, Color32::from_black_alpha(160)), StrokeKind::Outside);
     painter.rect_stroke(middle, 0.0, Stroke::new(1.0, Color32::WHITE), StrokeKind::Outside);
 
     let part = document.viewing.wipe.map_or(0.0, |wipe| wipe as f32);

@@ -36,7 +36,9 @@ pub fn show(ui: &mut Ui, document: &mut Document, stage: &Stage, screen: [u32; 2
     let canvas = ui.interact(rect, ui.scope_id().with("canvas"), Sense::click_and_drag());
     let Some(placement) = place(document.viewing.zoom) else { return Canvas::default() };
 
-    if let Some(at) = canvas.hover_pos() {
+    // Also over a handle, which takes the pointer from the canvas.
+    let pointer = ui.input(|input| input.pointer.hover_pos()).filter(|_| canvas.contains_pointer());
+    if let Some(at) = pointer {
         let factor = ui.input(|input| (input.smooth_scroll_delta().y / 200.0).exp() * input.zoom_delta());
         if factor != 1.0 {
             document.viewing.zoom = placement.zoomed(f64::from(factor), at);
@@ -64,7 +66,7 @@ pub fn show(ui: &mut Ui, document: &mut Document, stage: &Stage, screen: [u32; 2
     if document.viewing.handles {
         handles::show(ui, document, &placement);
     }
-    let loupe = canvas.hover_pos().filter(|_| document.viewing.loupe);
+    let loupe = pointer.filter(|_| document.viewing.loupe);
     let loupe = loupe.and_then(|at| loupe::show(ui, document, &placement, screen, at, probe));
     Canvas { placement: Some(placement), loupe }
 }

@@ -85,6 +85,13 @@ pub fn show(ui: &mut Ui, document: &mut Document, _: &Stage) {
             document.selected = None;
         }
     });
+    control::hint(
+        ui,
+        match document.look.lights {
+            LookLights::Found => "As they are found in the photo",
+            LookLights::Listed(_) => "A list of the look's own",
+        },
+    );
     let mut gone = None;
     // So many that they would leave no room for the rest have a part of the panel to be scrolled in.
     ScrollArea::vertical().id_salt("lights").max_height(LIST).show(ui, |ui| {
