@@ -7,6 +7,8 @@ use comfy_table::{CellAlignment, Table, presets};
 use serde::Serialize;
 
 use super::numbers::not_negative;
+use super::reading::ReadArgs;
+use super::stderr::warn;
 use super::stdout;
 use crate::Result;
 use crate::frame::Frame;
@@ -28,6 +30,9 @@ pub struct Args {
     /// Print JSON, which can be edited and read back as a file of lights
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    reading: ReadArgs,
 
     #[command(flatten)]
     find: FindArgs,
@@ -75,7 +80,8 @@ impl FindArgs {
 ///
 /// Where the photo cannot be read or standard output cannot be written.
 pub fn run(args: &Args) -> Result<()> {
-    let photo = photo::read(&args.photo)?;
+    let photo = photo::read_with(&args.photo, &args.reading.options())?;
+    warn(&photo.source.notes);
     let found = find(&photo.pixels, &photo.frame, photo.luminance_weights(), &args.find.over(FindOptions::default()));
     stdout::print(|out| if args.json { json(out, &found) } else { table(out, &found, &photo.frame) })
 }

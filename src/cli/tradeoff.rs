@@ -8,7 +8,9 @@ use comfy_table::{CellAlignment, Table, presets};
 use super::accuracy::CalibrationArgs;
 use super::lights::FindArgs;
 use super::progress::Progress;
+use super::reading::ReadArgs;
 use super::scene::SceneArgs;
+use super::stderr::warn;
 use super::{BackendChoice, stdout};
 use crate::gpu::Device;
 use crate::tradeoff::{self, Results, Subject, exponent, short};
@@ -46,6 +48,9 @@ pub struct Args {
     backend: BackendChoice,
 
     #[command(flatten)]
+    reading: ReadArgs,
+
+    #[command(flatten)]
     scene: SceneArgs,
 
     #[command(flatten)]
@@ -74,7 +79,8 @@ pub fn run(args: &Args) -> Result<()> {
     let mut look = args.scene.look()?;
     look.find = args.find.over(look.find);
     progress.step("reading the photo");
-    let photo = photo::read(&args.photo)?;
+    let photo = photo::read_with(&args.photo, &args.reading.options())?;
+    warn(&photo.source.notes);
     progress.step("finding the lights");
     let scene = look.gather(&photo);
     let name = name(&args.photo);
@@ -82,9 +88,7 @@ pub fn run(args: &Args) -> Result<()> {
     tradeoff::check(&args.output, args.force)?;
     let device = Device::open(args.backend.backends())?;
     let known = args.calibration.known(Some(device.info()));
-    if let Some(warning) = &known.warning {
-        eprintln!("vglare: warning: {warning}");
-    }
+    warn(&known.warning);
     let costs = known.file.is_some().then_some(known.model);
     let results = tradeoff::measure(&subject, &device, costs, args.quick, &mut |what, done| progress.part(what, done))?;
     progress.step("writing");

@@ -145,7 +145,9 @@ impl<'a> Job<'a> {
     pub fn new(look: &'a Look, photo: Photo, mut stages: Stages) -> Result<Self> {
         let bad = stages.time("survey", || photo::survey(&photo));
         let scene = stages.time("lights", || look.gather(&photo));
+        let mut warnings = photo.source.notes.clone();
         let (settings, warning) = settings(look, &photo, &scene, |threshold| bright_light(&photo, threshold))?;
+        warnings.extend(warning);
         Ok(Self {
             look,
             photo,
@@ -159,7 +161,7 @@ impl<'a> Job<'a> {
             passes: Vec::new(),
             measured_ms: None,
             stages,
-            warnings: warning.into_iter().collect(),
+            warnings,
         })
     }
 

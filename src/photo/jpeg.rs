@@ -10,13 +10,13 @@ use super::display::{self, Look};
 use super::icc::Profile;
 use super::read::check_size;
 use super::transfer::Curve;
-use super::{Alpha, Format, Photo, Reason, zeroed};
+use super::{Alpha, Format, Photo, ReadOptions, Reason, zeroed};
 
 const QUALITY: u8 = 95;
 /// The format counts columns and rows in 16 bits.
 pub(super) const LONGEST_SIDE: u32 = 65535;
 
-pub(super) fn read(mut reader: impl BufRead + Seek) -> Result<Photo, Reason> {
+pub(super) fn read(mut reader: impl BufRead + Seek, _options: &ReadOptions) -> Result<Photo, Reason> {
     let mut file = Vec::new();
     reader.read_to_end(&mut file)?;
     check_complete(&file)?;

@@ -47,7 +47,7 @@ use glam::DMat3;
 pub use bad::{BadKind, BadPixels, survey};
 pub use format::{Depth, Format};
 pub use primaries::Primaries;
-pub use read::{MAX_PIXELS, read};
+pub use read::{MAX_PIXELS, Missing, ReadOptions, read, read_with};
 pub(crate) use shown::Shown;
 pub use tone::ToneMap;
 pub(crate) use transfer::srgb_encode;
@@ -94,8 +94,14 @@ pub struct Source {
     pub grey: bool,
     /// Whether the values were meant for a display (PNG, JPEG, integer TIFF) and not scene-linear light.
     pub display_referred: bool,
-    /// The colours of (1,0,0), (0,1,0), (0,0,1) and (1,1,1), where they are not Rec.709's (OpenEXR only).
+    /// The colours of (1,0,0), (0,1,0), (0,0,1) and (1,1,1), where they are not Rec.709's (scene-linear formats only).
     pub primaries: Option<Primaries>,
+    /// Width of a pixel over its height, > 0; 1 in most files.
+    pub pixel_aspect: f64,
+    /// What the picture is called in a file that holds several: a layer, a part, a page.
+    pub picture: Option<String>,
+    /// What a person ought to know of how the file was read: what was damaged, missing, or taken for something else.
+    pub notes: Vec<String>,
     /// Everything else that an OpenEXR file held.
     exr: Option<Arc<exr::Rest>>,
 }
@@ -110,6 +116,9 @@ impl Source {
             grey: false,
             display_referred: false,
             primaries: None,
+            pixel_aspect: 1.0,
+            picture: None,
+            notes: Vec::new(),
             exr: None,
         }
     }

@@ -14,9 +14,9 @@ use super::display::{self, Code, Look, Samples};
 use super::icc::Profile;
 use super::read::check_size;
 use super::transfer::Curve;
-use super::{Alpha, Format, Photo, Primaries, Reason, zeroed};
+use super::{Alpha, Format, Photo, Primaries, ReadOptions, Reason, zeroed};
 
-pub(super) fn read(reader: impl BufRead + Seek) -> Result<Photo, Reason> {
+pub(super) fn read(reader: impl BufRead + Seek, _options: &ReadOptions) -> Result<Photo, Reason> {
     // The picture itself goes into our own memory; the limit is for the chunks around it.
     let mut decoder = png::Decoder::new_with_limits(reader, png::Limits { bytes: 1 << 30 });
     decoder.set_ignore_text_chunk(true);

@@ -16,6 +16,8 @@ pub struct Primaries {
 }
 
 const D65: DVec2 = DVec2::new(0.3127, 0.3290);
+const D50: DVec2 = DVec2::new(0.3457, 0.3585);
+const ACES_WHITE: DVec2 = DVec2::new(0.32168, 0.33767);
 
 impl Primaries {
     /// ITU-R BT.709, also sRGB's.
@@ -25,8 +27,43 @@ impl Primaries {
     /// SMPTE EG 432-1, Display P3.
     pub const P3_D65: Self = Self::new([0.680, 0.320], [0.265, 0.690], [0.150, 0.060], D65);
 
+    /// Adobe RGB (1998).
+    pub const ADOBE_RGB: Self = Self::new([0.64, 0.33], [0.21, 0.71], [0.15, 0.06], D65);
+    /// ROMM RGB, ISO 22028-2: ProPhoto's.
+    pub const PROPHOTO: Self = Self::new([0.7347, 0.2653], [0.1596, 0.8404], [0.0366, 0.0001], D50);
+    /// ACES AP1, SMPTE ST 2065-1 and S-2014-004: ACEScg's.
+    pub const ACESCG: Self = Self::new([0.713, 0.293], [0.165, 0.830], [0.128, 0.044], ACES_WHITE);
+    /// ACES AP0, SMPTE ST 2065-1.
+    pub const ACES2065_1: Self = Self::new([0.7347, 0.2653], [0.0, 1.0], [0.0001, -0.077], ACES_WHITE);
+
+    /// CIE 1931 XYZ, with equal energy as white.
+    pub const XYZ: Self = Self::new([1.0, 0.0], [0.0, 1.0], [0.0, 0.0], DVec2::new(1.0 / 3.0, 1.0 / 3.0));
+
+    /// The primaries that have a name here.
+    pub const NAMES: [(&str, Self); 8] = [
+        ("rec709", Self::REC709),
+        ("p3-d65", Self::P3_D65),
+        ("rec2020", Self::REC2020),
+        ("adobe-rgb", Self::ADOBE_RGB),
+        ("prophoto", Self::PROPHOTO),
+        ("acescg", Self::ACESCG),
+        ("aces2065-1", Self::ACES2065_1),
+        ("xyz", Self::XYZ),
+    ];
+
+    /// Those called `name`.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::NAMES.into_iter().find(|&(known, _)| known == name).map(|(_, primaries)| primaries)
+    }
+
     const fn new(red: [f64; 2], green: [f64; 2], blue: [f64; 2], white: DVec2) -> Self {
         Self { red: DVec2::from_array(red), green: DVec2::from_array(green), blue: DVec2::from_array(blue), white }
+    }
+
+    /// These primaries, if they span a colour space.
+    pub fn sound(self) -> Option<Self> {
+        let spans = |matrix: &DMat3| matrix.is_finite() && matrix.determinant().abs() > 1e-6;
+        self.to_xyz().is_some_and(|matrix| spans(&matrix)).then_some(self)
     }
 
     /// These primaries, if they span a colour space and are not Rec.709's (to three decimals, as files round them).
@@ -34,8 +71,7 @@ impl Primaries {
         let near = |a: DVec2, b: DVec2| (a - b).abs().max_element() < 1e-3;
         let r = Self::REC709;
         let same = near(self.red, r.red) && near(self.green, r.green) && near(self.blue, r.blue);
-        let sound = self.to_xyz().is_some_and(|m| m.is_finite() && m.determinant().abs() > 1e-6);
-        (sound && !(same && near(self.white, r.white))).then_some(self)
+        self.sound().filter(|_| !(same && near(self.white, r.white)))
     }
 
     /// The share of red, green and blue in luminance; they add up to 1.
@@ -54,7 +90,9 @@ impl Primaries {
 
     /// RGB to XYZ with Y = 1 at white: each primary's XYZ, scaled so that they add up to white.
     fn to_xyz(self) -> Option<DMat3> {
-        let directions = DMat3::from_cols(xyz(self.red), xyz(self.green), xyz(self.blue));
+        // A primary may have no luminance of its own (blue of CIE XYZ), so its direction is (x, y, z) and not X/Y.
+        let direction = |c: DVec2| DVec3::new(c.x, c.y, 1.0 - c.x - c.y);
+        let directions = DMat3::from_cols(direction(self.red), direction(self.green), direction(self.blue));
         let scale = directions.inverse() * xyz(self.white);
         let matrix = directions * DMat3::from_diagonal(scale);
         (directions.determinant().abs() > 1e-9 && matrix.is_finite()).then_some(matrix)
@@ -77,9 +115,6 @@ fn adapt(from: DVec2, to: DVec2) -> DMat3 {
 mod tests {
     use super::*;
 
-    const ACESCG: Primaries =
-        Primaries::new([0.713, 0.293], [0.165, 0.830], [0.128, 0.044], DVec2::new(0.32168, 0.33767));
-
     #[test]
     fn luminance_weights_are_the_published_ones() {
         let close = |p: Primaries, want: [f64; 3]| {
@@ -88,14 +123,14 @@ mod tests {
         };
         close(Primaries::REC709, [0.2126, 0.7152, 0.0722]);
         close(Primaries::REC2020, [0.2627, 0.6780, 0.0593]);
-        close(ACESCG, [0.2722, 0.6741, 0.0537]);
+        close(Primaries::ACESCG, [0.2722, 0.6741, 0.0537]);
     }
 
     #[test]
     fn acescg_to_rec709_is_the_published_matrix() {
         // ACES Output Transform, AP1 to Rec.709 with Bradford D60 to D65.
         let want = [[1.70505, -0.62179, -0.08326], [-0.13026, 1.14080, -0.01055], [-0.02400, -0.12897, 1.15297]];
-        let got = ACESCG.to_rec709();
+        let got = Primaries::ACESCG.to_rec709();
         for (row, want) in want.iter().enumerate() {
             for (column, want) in want.iter().enumerate() {
                 let got = got.col(column)[row];
@@ -113,6 +148,6 @@ mod tests {
         let zero = Primaries::new([0.0; 2], [0.0; 2], [0.0; 2], DVec2::ZERO);
         assert_eq!(zero.other_than_rec709(), None);
         assert_eq!(Primaries::REC709.other_than_rec709(), None);
-        assert_eq!(ACESCG.other_than_rec709(), Some(ACESCG));
+        assert_eq!(Primaries::ACESCG.other_than_rec709(), Some(Primaries::ACESCG));
     }
 }

@@ -5,11 +5,30 @@ use std::io::{self, BufRead, BufReader, Cursor, Read, Seek};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use super::{Format, Photo, Reason, exr, jpeg, pfm, png, radiance, tiff};
+use super::{Format, Photo, Primaries, Reason, exr, jpeg, pfm, png, radiance, tiff};
 use crate::error::{Error, Result};
 
 /// The most pixels that a photo may have, 2^29: 8 GiB in memory.
 pub const MAX_PIXELS: usize = 1 << 29;
+
+/// What becomes of pixels that an unfinished file lacks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Missing {
+    /// The file is refused.
+    #[default]
+    Refuse,
+    /// They are 0.
+    Zero,
+}
+
+/// How a photo is read.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ReadOptions {
+    /// What becomes of pixels that an unfinished file lacks (OpenEXR only).
+    pub missing: Missing,
+    /// The primaries of the file's numbers, whatever the file says of them.
+    pub primaries: Option<Primaries>,
+}
 
 /// Reads a photo.
 ///
@@ -17,10 +36,24 @@ pub const MAX_PIXELS: usize = 1 << 29;
 /// [`Error::ReadPhoto`] with the reason: missing, empty, cut short, damaged, of another kind, of no or more than
 /// [`MAX_PIXELS`] pixels.
 pub fn read(path: &Path) -> Result<Photo> {
-    let decoded = || {
+    read_with(path, &ReadOptions::default())
+}
+
+/// Reads a photo in the way that is asked for.
+///
+/// # Errors
+/// Those of [`read`].
+pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Photo> {
+    let decoded = || -> std::result::Result<Photo, Reason> {
         let mut reader = open(path)?;
         let format = Format::from_magic(reader.fill_buf()?)?;
-        decode(reader, format)
+        let mut photo = decode(reader, format, options)?;
+        if let Some(primaries) = options.primaries
+            && !photo.source.display_referred
+        {
+            photo.source.primaries = primaries.other_than_rec709();
+        }
+        Ok(photo)
     };
     // Decoders of foreign files are the one place where a panic is not a bug of ours.
     match catch_unwind(AssertUnwindSafe(decoded)) {
@@ -30,14 +63,14 @@ pub fn read(path: &Path) -> Result<Photo> {
     }
 }
 
-fn decode(reader: Box<dyn Input>, format: Format) -> std::result::Result<Photo, Reason> {
+fn decode(reader: Box<dyn Input>, format: Format, options: &ReadOptions) -> std::result::Result<Photo, Reason> {
     match format {
-        Format::OpenExr => exr::read(reader),
+        Format::OpenExr => exr::read(reader, options),
         Format::Radiance => radiance::read(reader),
         Format::Pfm => pfm::read(reader),
-        Format::Tiff => tiff::read(reader),
-        Format::Png => png::read(reader),
-        Format::Jpeg => jpeg::read(reader),
+        Format::Tiff => tiff::read(reader, options),
+        Format::Png => png::read(reader, options),
+        Format::Jpeg => jpeg::read(reader, options),
     }
 }
 

@@ -17,9 +17,9 @@ use super::icc::Profile;
 use super::pfm::rec709;
 use super::read::{MAX_PIXELS, check_size};
 use super::transfer::Curve;
-use super::{Alpha, Depth, Format, Photo, Reason, zeroed};
+use super::{Alpha, Depth, Format, Photo, ReadOptions, Reason, zeroed};
 
-pub(super) fn read(reader: impl BufRead + Seek) -> Result<Photo, Reason> {
+pub(super) fn read(reader: impl BufRead + Seek, _options: &ReadOptions) -> Result<Photo, Reason> {
     // The picture's size is checked below; this bounds what a single tag or strip may ask for.
     let bytes = MAX_PIXELS.saturating_mul(16);
     let mut limits = Limits::default();

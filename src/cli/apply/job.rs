@@ -22,7 +22,7 @@ impl<'a> Job<'a> {
     /// Those of [`photo::read`] and [`Job::found`].
     pub fn read(args: &'a Args, paths: &'a Paths, look: &'a Look) -> Result<Self> {
         let mut stages = Stages::default();
-        let photo = stages.time("read", || photo::read(&paths.input))?;
+        let photo = stages.time("read", || photo::read_with(&paths.input, &args.reading.options()))?;
         Self::found(args, paths, look, photo, stages)
     }
 

@@ -18,6 +18,7 @@ use clap::ValueEnum;
 use super::accuracy::AccuracyArgs;
 use super::lights::FindArgs;
 use super::numbers::finite;
+use super::reading::ReadArgs;
 use super::scene::SceneArgs;
 use crate::Result;
 use crate::certificate::Verify;
@@ -68,6 +69,9 @@ pub struct Args {
 
     #[command(flatten)]
     sequence: SequenceArgs,
+
+    #[command(flatten)]
+    reading: ReadArgs,
 
     #[command(flatten)]
     scene: SceneArgs,

@@ -26,6 +26,7 @@ pub struct Report<'a> {
     plan: Option<&'a Plan>,
     cost: Option<CostReport<'a>>,
     notes: &'a [String],
+    warnings: &'a [String],
     error: Option<&'a Certificate>,
     passes: &'a [PassTime],
     milliseconds: Vec<Stage>,
@@ -37,6 +38,8 @@ struct PhotoReport {
     file: String,
     format: &'static str,
     depth: &'static str,
+    /// What the picture is called in a file that holds several.
+    layer: Option<String>,
     picture: [u32; 2],
     window: [i64; 4],
     bad_pixels: BadReport,
@@ -109,6 +112,7 @@ impl<'a> Report<'a> {
             plan: job.work.planned.as_ref().map(|planned| &planned.plan),
             cost: cost_report(job),
             notes: job.work.planned.as_ref().map_or(&[], |planned| &planned.notes),
+            warnings: &job.work.warnings,
             error: job.work.certificate.as_ref(),
             passes: &job.work.passes,
             milliseconds: job.work.stages.0.iter().map(|&(stage, wall_ms)| Stage { stage, wall_ms }).collect(),
@@ -134,6 +138,7 @@ fn photo_report(job: &Job<'_>) -> PhotoReport {
         file: job.paths.input.display().to_string(),
         format: photo.format_name(),
         depth: photo.depth_name(),
+        layer: photo.source.picture.clone(),
         picture: [photo.width(), photo.height()],
         window: [window.x.into(), window.y.into(), window.width.into(), window.height.into()],
         bad_pixels: BadReport {

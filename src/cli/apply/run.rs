@@ -50,7 +50,7 @@ fn single(args: &Args) -> Result<()> {
 /// Reads the photo while the GL context opens: neither needs the other, and both take a while.
 fn read(args: &Args, paths: &Paths, look: &Look) -> Result<(Photo, Option<Computer>)> {
     std::thread::scope(|scope| {
-        let photo = scope.spawn(|| photo::read(&paths.input));
+        let photo = scope.spawn(|| photo::read_with(&paths.input, &args.reading.options()));
         let device = look.renders().then(|| Device::open(args.accuracy.backend.backends()));
         let photo = photo.join().unwrap_or_else(|_| Err(Error::read_photo(&paths.input, "the reader failed")))?;
         Ok((photo, device.transpose()?.map(Computer::new)))

@@ -7,15 +7,13 @@ use super::report::kind_name;
 use crate::Result;
 use crate::certificate::Verify;
 use crate::cli::plan::text;
-use crate::cli::stdout;
+use crate::cli::{stderr, stdout};
 use crate::look::Gathered;
 use crate::plan::Plan;
 
 /// Warnings to standard error; unless quiet, a short summary to standard output.
 pub fn print(job: &Job<'_>) -> Result<()> {
-    for warning in &job.work.warnings {
-        eprintln!("vglare: warning: {warning}");
-    }
+    stderr::warn(&job.work.warnings);
     if job.args.quiet {
         return Ok(());
     }
@@ -38,7 +36,11 @@ fn about_photo(out: &mut dyn Write, job: &Job<'_>) -> io::Result<()> {
     let (photo, bad) = (&job.work.photo, &job.work.bad);
     let (width, height) = (photo.width(), photo.height());
     let (format, depth) = (photo.format_name(), photo.depth_name());
-    writeln!(out, "photo    {}: {width} x {height}, {format}, {depth}", job.paths.input.display())?;
+    write!(out, "photo    {}: {width} x {height}, {format}, {depth}", job.paths.input.display())?;
+    match &photo.source.picture {
+        Some(picture) => writeln!(out, "; its picture is {picture}")?,
+        None => writeln!(out)?,
+    }
     if let Some((column, row, kind)) = bad.first {
         writeln!(
             out,

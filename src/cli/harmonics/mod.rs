@@ -7,6 +7,7 @@ mod summary;
 use std::path::PathBuf;
 
 use super::numbers::finite;
+use super::reading::ReadArgs;
 use crate::series::sphere::HIGHEST_DEGREE;
 
 pub use run::run;
@@ -67,9 +68,12 @@ pub struct Args {
     #[arg(long)]
     force: bool,
 
-    /// Say nothing but errors
+    /// Say nothing but errors and warnings
     #[arg(short, long)]
     quiet: bool,
+
+    #[command(flatten)]
+    reading: ReadArgs,
 }
 
 const EXAMPLES: &str = "\

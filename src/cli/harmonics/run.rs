@@ -7,6 +7,7 @@ use glam::DQuat;
 use super::coefficients::{self, Kind};
 use super::{Angles, Args, summary};
 use crate::cli::progress::Progress;
+use crate::cli::stderr;
 use crate::photo::{self, BadPixels, Photo, WriteOptions};
 use crate::series::sphere::{Coefficients, Grid, Reading, project_panorama, project_samples, project_turned, turn};
 use crate::{Error, Result};
@@ -114,7 +115,8 @@ pub struct Panorama {
 
 impl Panorama {
     fn read(args: &Args) -> Result<Self> {
-        let photo = photo::read(&args.panorama)?;
+        let photo = photo::read_with(&args.panorama, &args.reading.options())?;
+        stderr::warn(&photo.source.notes);
         let (width, height) = (photo.width(), photo.height());
         if u64::from(width) != 2 * u64::from(height) {
             let reason = format!("a panorama is twice as wide as high, and this is {width} x {height}");

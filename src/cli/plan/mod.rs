@@ -9,7 +9,9 @@ use serde::Serialize;
 
 use super::accuracy::AccuracyArgs;
 use super::lights::FindArgs;
+use super::reading::ReadArgs;
 use super::scene::SceneArgs;
+use super::stderr::warn;
 use super::stdout;
 use crate::frame::Frame;
 use crate::gpu::{Device, Info};
@@ -36,6 +38,9 @@ pub struct Args {
     /// Print JSON
     #[arg(long)]
     json: bool,
+
+    #[command(flatten)]
+    reading: ReadArgs,
 
     #[command(flatten)]
     scene: SceneArgs,
@@ -70,15 +75,14 @@ pub fn run(args: &Args) -> Result<()> {
     let mut look = args.scene.look()?;
     look.find = args.find.over(look.find);
     look.accuracy = args.accuracy.over(look.accuracy);
-    let photo = photo::read(&args.photo)?;
+    let photo = photo::read_with(&args.photo, &args.reading.options())?;
+    warn(&photo.source.notes);
     let scene = look.gather(&photo);
     let frame = args.size.map_or(photo.frame, |[width, height]| Frame::full(width, height));
     let device = Device::open(args.accuracy.backend.backends()).ok();
     let info = device.as_ref().map(|device| device.info());
     let planned = job::plan(&look.accuracy, &scene.ghosts, frame, info, args.accuracy.known(info))?;
-    for warning in &planned.warnings {
-        eprintln!("vglare: warning: {warning}");
-    }
+    warn(&planned.warnings);
     let budget = look.accuracy.goal.budget();
     let told = Told { photo: &args.photo, frame, scene: &scene, planned: &planned, info, budget };
     stdout::print(|out| if args.json { told.json(out) } else { told.text(out) })

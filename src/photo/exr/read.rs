@@ -15,7 +15,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::super::read::check_size;
-use super::super::{Alpha, Depth, Format, Photo, Primaries, Reason, Source, zeroed};
+use super::super::{Alpha, Depth, Format, Photo, Primaries, ReadOptions, Reason, Source, zeroed};
 use super::Rest;
 use super::layer::{Layer, Role, choose};
 use super::lines::Scratch;
@@ -27,7 +27,7 @@ const BLOCKS_A_THREAD: usize = 4;
 /// Bytes that a block may claim to have: decompression takes the memory before it looks.
 const LARGEST_BLOCK: usize = 1 << 32;
 
-pub fn read(reader: impl BufRead + Seek) -> Result<Photo, Reason> {
+pub fn read(reader: impl BufRead + Seek, _options: &ReadOptions) -> Result<Photo, Reason> {
     let reader = block::read(reader, false).map_err(explain)?;
     let layer = choose(reader.headers())?;
     let header = reader.headers()[layer.part].clone();
