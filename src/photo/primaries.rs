@@ -80,12 +80,24 @@ impl Primaries {
     }
 
     /// The matrix from this space to Rec.709: white to white, by Bradford's adaptation.
+    ///
+    /// CIE XYZ is not adapted: its numbers are what an observer measures of a light, and D65 is (0.9505, 1, 1.089)
+    /// among them, whatever white their file names. So OpenEXR's test pictures have it: XYZ.exr and Rec709.exr of its
+    /// Chromaticities show the same.
     pub(super) fn to_rec709(self) -> DMat3 {
         let (from, to) = (self.to_xyz(), Self::REC709.to_xyz());
+        let white = Self::REC709.white;
         match (from, to) {
-            (Some(from), Some(to)) => to.inverse() * adapt(self.white, Self::REC709.white) * from,
+            _ if self.is_xyz() => to.map_or(DMat3::IDENTITY, |to| to.inverse()),
+            (Some(from), Some(to)) => to.inverse() * adapt(self.white, white) * from,
             _ => DMat3::IDENTITY,
         }
+    }
+
+    /// Whether the primaries are those of CIE XYZ, whatever the white.
+    fn is_xyz(self) -> bool {
+        let near = |a: DVec2, b: DVec2| (a - b).abs().max_element() < 1e-3;
+        near(self.red, Self::XYZ.red) && near(self.green, Self::XYZ.green) && near(self.blue, Self::XYZ.blue)
     }
 
     /// RGB to XYZ with Y = 1 at white: each primary's XYZ, scaled so that they add up to white.
@@ -137,6 +149,26 @@ mod tests {
                 assert!((got - want).abs() < 2e-4, "row {row} column {column}: {got} for {want}");
             }
         }
+    }
+
+    #[test]
+    fn xyz_is_what_it_says_and_not_adapted() {
+        // IEC 61966-2-1's matrix from XYZ of D65 to linear Rec.709, to its four decimals.
+        let want = [[3.2406, -1.5372, -0.4986], [-0.9689, 1.8758, 0.0415], [0.0557, -0.2040, 1.0570]];
+        for white in [Primaries::XYZ.white, D65] {
+            let got = Primaries { white, ..Primaries::XYZ }.to_rec709();
+            for (row, want) in want.iter().enumerate() {
+                for (column, want) in want.iter().enumerate() {
+                    assert!((got.col(column)[row] - want).abs() < 2e-3, "row {row} column {column}: {got}");
+                }
+            }
+        }
+        let weights = Primaries::XYZ.luminance_weights();
+        assert!(weights.iter().zip([0.0, 1.0, 0.0]).all(|(got, want)| (got - want).abs() < 1e-12), "{weights:?}");
+        // SMPTE ST 2065-1's second row: the blue of AP0 takes from luminance.
+        let weights = Primaries::ACES2065_1.luminance_weights();
+        let want = [0.343_966_449_8, 0.728_166_096_6, -0.072_132_546_4];
+        assert!(weights.iter().zip(want).all(|(got, want)| (got - want).abs() < 1e-6), "{weights:?}");
     }
 
     #[test]

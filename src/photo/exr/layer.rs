@@ -1,19 +1,57 @@
 //! Which channels of a file are the picture.
+//!
+//! A channel's name is its layer's, a dot, and its own (`diffuse.R`); a part may have a name, too, which counts like a
+//! layer's where the channel has none. What is left when the name of a view is taken off (`beauty.right.R`, a part
+//! `rgba.left`) is the layer's name. The picture is the first of these that is there:
+//!
+//! 1. R, G, B (or red, green, blue, in any case) without a name;
+//! 2. Y, or Y with RY and BY (luminance and chroma), without a name;
+//! 3. R, G, B, then Y, of a layer or part whose name says that it is finished ([`FINISHED`]);
+//! 4. R, G, B of any part, then of any layer, then R, G and B from three parts of one window;
+//! 5. Y of any layer or part; X, Y, Z without a layer's name, which are taken for CIE XYZ;
+//! 6. the one of R, G, B that a layer has, or the file's only channel, as grey.
+//!
+//! Of a stereo file the first view comes before the others. Alpha is the A or alpha beside the colours.
 
 use exr::meta::attribute::{ChannelDescription, SampleType};
 use exr::meta::header::Header;
+use rustc_hash::FxHashMap;
 
 use super::super::Reason;
+use super::names::{self, Names, list, split, text};
 
-/// The part and the channels that the photo's pixels are made of.
+/// The parts and the channels that the photo's pixels are made of.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Layer {
+    /// The parts that the channels stand in: one, unless R, G and B have parts of their own. Not empty; the first is
+    /// the one whose header describes the picture.
+    pub members: Vec<Member>,
+    /// What the channels are.
+    pub colours: Colours,
+}
+
+/// A part that holds channels of the picture.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Member {
     /// Index of the part.
     pub part: usize,
     /// What the channels' names begin with: nothing, or a layer's name and a dot.
     pub prefix: String,
     /// For each channel of the part, what it is.
     pub roles: Vec<Role>,
+}
+
+/// What the channels of a picture are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Colours {
+    /// Red, green, blue.
+    Rgb,
+    /// One channel for all three colours.
+    Grey,
+    /// Y with RY = (R − Y) / Y and BY = (B − Y) / Y.
+    LumaChroma,
+    /// CIE XYZ.
+    Xyz,
 }
 
 /// What a channel is to the photo.
@@ -23,97 +61,350 @@ pub(super) enum Role {
     Component(usize),
     /// Luminance, which is all three colours.
     Luminance,
+    /// RY or BY: the component, 0 or 2, that it makes of the luminance.
+    Chroma(usize),
     /// Something else, to be carried along.
     Other,
 }
 
-/// Layers of these names are the finished picture, where a file has many.
-const FINISHED: [&str; 8] = ["combined", "beauty", "composite", "rgba", "rgb", "main", "image", "color"];
-
-struct Candidate {
-    layer: Layer,
-    rank: u8,
+/// The picture, and what there is to say of the choice.
+#[derive(Debug)]
+pub(super) struct Choice {
+    pub layer: Layer,
+    /// What the picture is called, where the file holds others.
+    pub name: Option<String>,
+    pub notes: Vec<String>,
 }
 
-/// Finds the picture: R, G, B without a layer's name (first in a part without a name), then Y likewise, then a layer
-/// whose name says that it is finished, then the first with R, G, B, then the first with Y.
-pub(super) fn choose(headers: &[Header]) -> Result<Layer, Reason> {
-    let candidates = headers.iter().enumerate().flat_map(|(part, header)| candidates(part, header));
-    match candidates.min_by_key(|candidate| candidate.rank) {
-        Some(best) => Ok(best.layer),
-        None => {
-            let names = headers.iter().flat_map(|h| &h.channels.list).map(|c| c.name.to_string());
-            let names: Vec<String> = names.collect();
-            if names.iter().any(|name| matches!(split(name).1, "RY" | "BY")) {
-                return Err("it holds luminance and chroma (Y, RY, BY), which vglare does not read".into());
+/// Layers and parts of these names are the finished picture, where a file has many.
+const FINISHED: [&str; 11] =
+    ["combined", "beauty", "composite", "rgba", "rgb", "main", "image", "color", "colour", "final", "ci"];
+
+/// Channels of one layer in one part.
+struct Group {
+    part: usize,
+    names: Names,
+    /// Indices of the channels that mean something, by [`Slot`].
+    slots: [Option<usize>; Slot::ALL],
+}
+
+/// What a channel's own name says that it is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+#[repr(usize)]
+enum Slot {
+    Red,
+    Green,
+    Blue,
+    Alpha,
+    Y,
+    Ry,
+    By,
+    X,
+    Z,
+}
+
+impl Slot {
+    const ALL: usize = 9;
+    const RGB: [Self; 3] = [Self::Red, Self::Green, Self::Blue];
+
+    /// What a channel's own name means, and whether it is the short name.
+    fn of(name: &str) -> Option<(Self, bool)> {
+        Some(match name {
+            "Y" => (Self::Y, true),
+            "RY" => (Self::Ry, true),
+            "BY" => (Self::By, true),
+            "X" | "x" => (Self::X, true),
+            "Z" => (Self::Z, true),
+            _ => match name.to_ascii_lowercase().as_str() {
+                "r" => (Self::Red, true),
+                "g" => (Self::Green, true),
+                "b" => (Self::Blue, true),
+                "a" => (Self::Alpha, true),
+                "red" => (Self::Red, false),
+                "green" => (Self::Green, false),
+                "blue" => (Self::Blue, false),
+                "alpha" => (Self::Alpha, false),
+                _ => return None,
+            },
+        })
+    }
+}
+
+/// Something that may be the picture. The least rank is.
+struct Candidate<'g> {
+    rank: u8,
+    colours: Colours,
+    /// The groups of the channels, and which of their channels are taken.
+    from: Vec<(&'g Group, Vec<(usize, Role)>)>,
+}
+
+/// Ranks from here on are no picture by their names.
+const NO_PICTURE: u8 = 9;
+
+/// Finds the picture.
+///
+/// # Errors
+/// Where nothing can be it.
+pub(super) fn choose(headers: &[Header]) -> Result<Choice, Reason> {
+    let groups: Vec<Group> = (0..headers.len()).flat_map(|part| groups(headers, part)).collect();
+    let mut candidates: Vec<Candidate> = groups.iter().filter_map(|group| candidate(headers, group)).collect();
+    if let Some(scattered) = scattered(headers, &groups) {
+        candidates.push(scattered);
+    }
+    if candidates.is_empty() {
+        candidates = lone(headers, &groups);
+    }
+    let hero = names::hero(headers);
+    let key = |c: &Candidate| {
+        let view = &c.from[0].0.names.view;
+        (c.rank >= NO_PICTURE, view.is_some() && *view != hero, c.rank)
+    };
+    let Some(best) = candidates.iter().min_by_key(|candidate| key(candidate)) else {
+        return Err(nothing(headers, &groups));
+    };
+    let mut notes = Vec::new();
+    let equals: Vec<String> = candidates.iter().filter(|c| key(c) == key(best)).map(|c| c.name(headers)).collect();
+    if let [first, others @ ..] = &equals[..]
+        && !others.is_empty()
+    {
+        let others = list(others.iter().map(String::as_str), 3);
+        notes.push(format!("more than one layer may be the picture: {first} was taken, and not {others}"));
+    }
+    notes.extend(best.other_views(&candidates));
+    notes.extend(best.doubts(headers));
+    let name = (candidates.len() > 1).then(|| best.name(headers));
+    Ok(Choice { layer: best.layer(headers), name, notes })
+}
+
+/// The channels of a part by their layers, in the file's order.
+fn groups(headers: &[Header], part: usize) -> Vec<Group> {
+    let mut groups: Vec<Group> = Vec::new();
+    let mut known: FxHashMap<String, usize> = FxHashMap::default();
+    for (index, channel) in headers[part].channels.list.iter().enumerate() {
+        let name = text(&channel.name);
+        let (prefix, own) = split(&name);
+        let at = *known.entry(prefix.to_owned()).or_insert_with(|| {
+            groups.push(Group { part, names: Names::new(headers, part, prefix), slots: Default::default() });
+            groups.len() - 1
+        });
+        if let Some((slot, short)) = Slot::of(own) {
+            let slot = &mut groups[at].slots[slot as usize];
+            if short || slot.is_none() {
+                *slot = Some(index);
             }
-            Err(format!("no layer has R, G, B or Y; there are {}", names.join(", ")).into())
+        }
+    }
+    groups
+}
+
+impl Group {
+    fn get(&self, slot: Slot) -> Option<usize> {
+        self.slots[slot as usize]
+    }
+
+    fn has(&self, slots: &[Slot]) -> bool {
+        slots.iter().all(|&slot| self.get(slot).is_some())
+    }
+
+    fn has_any(&self, slots: &[Slot]) -> bool {
+        slots.iter().any(|&slot| self.get(slot).is_some())
+    }
+
+    /// Channels as roles, with the alpha beside them.
+    fn take(&self, roles: &[(Slot, Role)]) -> Vec<(usize, Role)> {
+        let alpha = [(Slot::Alpha, Role::Component(3))];
+        roles.iter().chain(&alpha).filter_map(|&(slot, role)| Some((self.get(slot)?, role))).collect()
+    }
+}
+
+/// The colours that a group holds, if it is whole.
+fn candidate<'g>(headers: &[Header], group: &'g Group) -> Option<Candidate<'g>> {
+    use Slot::{Blue, By, Green, Red, Ry, X, Y, Z};
+    let names = &group.names;
+    let (colours, roles): (_, &[(Slot, Role)]) = if group.has(&Slot::RGB) {
+        (Colours::Rgb, &[(Red, Role::Component(0)), (Green, Role::Component(1)), (Blue, Role::Component(2))])
+    } else if group.has_any(&Slot::RGB) {
+        return None;
+    } else if group.has(&[Y, Ry, By]) {
+        (Colours::LumaChroma, &[(Y, Role::Luminance), (Ry, Role::Chroma(0)), (By, Role::Chroma(2))])
+    } else if group.has(&[Y]) && !group.has_any(&[X, Ry, By]) {
+        (Colours::Grey, &[(Y, Role::Luminance)])
+    } else if group.has(&[X, Y, Z]) && names.prefix.is_empty() {
+        // Positions and normals have a layer's name.
+        (Colours::Xyz, &[(X, Role::Component(0)), (Y, Role::Component(1)), (Z, Role::Component(2))])
+    } else {
+        return None;
+    };
+    let unnamed = names.layer.is_empty() || names.prefix.is_empty() && headers.len() == 1;
+    let finished = FINISHED.contains(&names.layer.as_str());
+    let rank = match (colours, unnamed, finished) {
+        (Colours::Xyz, ..) => 8,
+        (Colours::Rgb, true, _) => 0,
+        (_, true, _) => 1,
+        (Colours::Rgb, _, true) => 2,
+        (_, _, true) => 3,
+        (Colours::Rgb, ..) if names.prefix.is_empty() => 4,
+        (Colours::Rgb, ..) => 5,
+        _ => 7,
+    };
+    Some(Candidate { rank, colours, from: vec![(group, group.take(roles))] })
+}
+
+/// Groups of one layer and view that hold R, G and B between them, in parts of one window.
+fn scattered<'g>(headers: &[Header], groups: &'g [Group]) -> Option<Candidate<'g>> {
+    let mut found: FxHashMap<(&str, Option<&str>), [Option<&Group>; 4]> = FxHashMap::default();
+    let incomplete = groups.iter().filter(|group| !group.has(&Slot::RGB));
+    for group in incomplete {
+        let place = found.entry((&group.names.prefix, group.names.view.as_deref())).or_default();
+        for (place, slot) in place.iter_mut().zip([Slot::Red, Slot::Green, Slot::Blue, Slot::Alpha]) {
+            if place.is_none() && group.has(&[slot]) {
+                *place = Some(group);
+            }
+        }
+    }
+    let window = |group: &Group| headers[group.part].data_window();
+    let whole = |places: &[Option<&'g Group>; 4]| match *places {
+        [Some(r), Some(g), Some(b), a] if window(r) == window(g) && window(r) == window(b) => {
+            Some([Some(r), Some(g), Some(b), a.filter(|a| window(a) == window(r))])
+        }
+        _ => None,
+    };
+    let places = found.values().filter_map(whole).min_by_key(|places| places[0].map(|group| group.part))?;
+    let mut from: Vec<(&Group, Vec<(usize, Role)>)> = Vec::new();
+    for (component, (group, slot)) in
+        places.into_iter().zip([Slot::Red, Slot::Green, Slot::Blue, Slot::Alpha]).enumerate()
+    {
+        let Some((group, channel)) = group.and_then(|group| Some((group, group.get(slot)?))) else { continue };
+        let role = (channel, Role::Component(component));
+        match from.iter_mut().find(|(known, _)| known.part == group.part) {
+            Some((_, roles)) => roles.push(role),
+            None => from.push((group, vec![role])),
+        }
+    }
+    Some(Candidate { rank: 6, colours: Colours::Rgb, from })
+}
+
+/// Channels that stand alone.
+fn lone<'g>(headers: &[Header], groups: &'g [Group]) -> Vec<Candidate<'g>> {
+    let grey = |rank, group, taken| Candidate { rank, colours: Colours::Grey, from: vec![(group, taken)] };
+    let mut colours = FxHashMap::default();
+    for slot in Slot::RGB {
+        let named = groups.iter().filter(|group| group.has(&[slot]));
+        named.for_each(|group| *colours.entry(&*group.names.prefix).or_insert(0) += 1);
+    }
+    // Two or three of R, G, B are a picture that is not whole.
+    let one = |group: &&Group| colours.get(&*group.names.prefix) == Some(&1) && group.has_any(&Slot::RGB);
+    let red = |group: &'g Group| grey(NO_PICTURE, group, group.take(&Slot::RGB.map(|slot| (slot, Role::Luminance))));
+    let found: Vec<Candidate> = groups.iter().filter(one).map(red).collect();
+    if !found.is_empty() {
+        return found;
+    }
+    let count: usize = headers.iter().map(|header| header.channels.list.len()).sum();
+    let alphas: Vec<&Group> = groups.iter().filter(|group| group.has(&[Slot::Alpha])).collect();
+    let only = match (count, groups, &alphas[..]) {
+        (1, [group], _) => Some((group, 0, None)),
+        (2, [group], [_]) => {
+            let alpha = group.get(Slot::Alpha);
+            Some((group, usize::from(alpha == Some(0)), alpha))
+        }
+        _ => None,
+    };
+    let only = only.map(|(group, index, alpha)| {
+        let alpha = alpha.map(|alpha| (alpha, Role::Component(3)));
+        grey(NO_PICTURE + 1, group, [(index, Role::Luminance)].into_iter().chain(alpha).collect())
+    });
+    only.into_iter().collect()
+}
+
+/// Why nothing is the picture.
+fn nothing(headers: &[Header], groups: &[Group]) -> Reason {
+    let channels = headers.iter().flat_map(|header| &header.channels.list).map(|channel| text(&channel.name));
+    let names: Vec<_> = channels.collect();
+    let listed = list(names.iter().map(|name| &**name), 10);
+    if Slot::RGB.iter().all(|&slot| groups.iter().any(|group| group.has(&[slot]))) {
+        return format!(
+            "R, G and B are not of one layer, or of parts with different windows; its channels are {listed}"
+        )
+        .into();
+    }
+    format!("no layer has R, G and B, or Y; its channels are {listed}").into()
+}
+
+impl Candidate<'_> {
+    fn layer(&self, headers: &[Header]) -> Layer {
+        let member = |(group, taken): &(&Group, Vec<(usize, Role)>)| {
+            let mut roles = vec![Role::Other; headers[group.part].channels.list.len()];
+            taken.iter().for_each(|&(index, role)| roles[index] = role);
+            Member { part: group.part, prefix: group.names.prefix.clone(), roles }
+        };
+        Layer { members: self.from.iter().map(member).collect(), colours: self.colours }
+    }
+
+    fn name(&self, headers: &[Header]) -> String {
+        let (group, taken) = &self.from[0];
+        let channels = taken.iter().filter(|(_, role)| *role != Role::Component(3));
+        let channels = channels.map(|&(index, _)| text(&headers[group.part].channels.list[index].name));
+        if let [_, others @ ..] = &self.from[..]
+            && !others.is_empty()
+        {
+            return "parts of R, G and B".to_owned();
+        }
+        group.names.title(headers).unwrap_or_else(|| channels.collect::<Vec<_>>().join(", "))
+    }
+
+    /// That the picture is one of several views.
+    fn other_views(&self, candidates: &[Candidate]) -> Option<String> {
+        let view = |candidate: &Candidate| candidate.from[0].0.names.view.clone();
+        let own = view(self)?;
+        let mut others: Vec<String> = candidates.iter().filter_map(view).filter(|view| *view != own).collect();
+        others.sort();
+        others.dedup();
+        let others = list(others.iter().map(String::as_str), 3);
+        (!others.is_empty()).then(|| format!("it is stereo: the view {own} is the picture, and {others} gets no glare"))
+    }
+
+    /// What a person might have meant otherwise.
+    fn doubts(&self, headers: &[Header]) -> Option<String> {
+        let (group, taken) = &self.from[0];
+        let name = || text(&headers[group.part].channels.list[taken[0].0].name).into_owned();
+        match self.colours {
+            Colours::Xyz => Some("its channels X, Y and Z are taken for colours in CIE XYZ".to_owned()),
+            Colours::Grey if self.rank >= NO_PICTURE => {
+                Some(format!("its one channel {} is taken for a grey picture", name()))
+            }
+            _ => None,
         }
     }
 }
 
-fn candidates(part: usize, header: &Header) -> Vec<Candidate> {
-    let names: Vec<String> = header.channels.list.iter().map(|c| c.name.to_string()).collect();
-    let mut prefixes: Vec<&str> = names.iter().map(|name| split(name).0).collect();
-    prefixes.dedup();
-    let unnamed = header.own_attributes.layer_name.is_none();
-    prefixes.iter().filter_map(|prefix| candidate(part, &names, prefix, unnamed)).collect()
-}
-
-fn candidate(part: usize, names: &[String], prefix: &str, unnamed: bool) -> Option<Candidate> {
-    let has = |wanted: &str| names.iter().any(|n| split(n) == (prefix, wanted));
-    let is_rgb = |names: [&str; 3]| names.iter().all(|name| has(name));
-    let rgb = is_rgb(["R", "G", "B"]) || is_rgb(["r", "g", "b"]);
-    // Y beside X is a position or a normal; Y beside RY and BY is luminance and chroma, which no one could tell apart
-    // from grey later.
-    let grey = has("Y") && !["X", "x", "RY", "BY"].iter().any(|other| has(other));
-    if !rgb && !grey {
-        return None;
-    }
-    let role = |name: &String| match split(name) {
-        (p, _) if p != prefix => Role::Other,
-        (_, "R" | "r") if rgb => Role::Component(0),
-        (_, "G" | "g") if rgb => Role::Component(1),
-        (_, "B" | "b") if rgb => Role::Component(2),
-        (_, "Y") if !rgb => Role::Luminance,
-        (_, "A" | "a") => Role::Component(3),
-        _ => Role::Other,
-    };
-    let finished = prefix.trim_end_matches('.').rsplit('.').next().unwrap_or_default().to_lowercase();
-    let rank = match (prefix.is_empty(), rgb) {
-        (true, true) => u8::from(!unnamed),
-        (true, false) => 2 + u8::from(!unnamed),
-        (false, true) if FINISHED.contains(&finished.as_str()) => 4,
-        (false, true) => 5,
-        (false, false) => 6,
-    };
-    let roles: Vec<Role> = names.iter().map(role).collect();
-    Some(Candidate { layer: Layer { part, prefix: prefix.to_owned(), roles }, rank })
-}
-
-/// A channel's layer, with its dot, and its own name.
-fn split(name: &str) -> (&str, &str) {
-    name.split_at(name.rfind('.').map_or(0, |dot| dot + 1))
-}
-
 impl Layer {
+    /// The part whose header describes the picture.
+    pub fn part(&self) -> usize {
+        self.members[0].part
+    }
+
+    /// What a part holds of the picture.
+    pub fn member(&self, part: usize) -> Option<usize> {
+        self.members.iter().position(|member| member.part == part)
+    }
+
     /// Whether the picture has an alpha channel.
     pub fn has_alpha(&self) -> bool {
-        self.roles.contains(&Role::Component(3))
-    }
-
-    /// Whether the picture is luminance alone.
-    pub fn is_grey(&self) -> bool {
-        self.roles.contains(&Role::Luminance)
+        self.members.iter().any(|member| member.roles.contains(&Role::Component(3)))
     }
 
     /// The channels of the picture's colours.
-    pub fn colours<'h>(&self, header: &'h Header) -> impl Iterator<Item = &'h ChannelDescription> {
-        let colour = |role: &Role| matches!(role, Role::Component(0..=2) | Role::Luminance);
-        let chosen: Vec<bool> = self.roles.iter().map(colour).collect();
-        header.channels.list.iter().zip(chosen).filter_map(|(channel, chosen)| chosen.then_some(channel))
+    pub fn colour_channels<'h>(&self, headers: &'h [Header]) -> Vec<&'h ChannelDescription> {
+        let colour = |role: &Role| matches!(role, Role::Component(0..=2) | Role::Luminance | Role::Chroma(_));
+        let of = |member: &Member| {
+            let channels = headers[member.part].channels.list.iter().zip(member.roles.clone());
+            channels.filter(move |(_, role)| colour(role)).map(|(channel, _)| channel)
+        };
+        self.members.iter().flat_map(of).collect()
     }
+}
 
+impl Member {
     /// Whether a channel's samples must be kept as bytes: all that is no picture, and integers, which an f32 rounds.
     pub fn carries(&self, index: usize, channel: &ChannelDescription) -> bool {
         self.roles[index] == Role::Other || channel.sample_type == SampleType::U32
@@ -123,6 +414,7 @@ impl Layer {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use exr::math::Vec2;
     use exr::meta::attribute::Text;
 
     fn part(name: Option<&str>, channels: &[&str]) -> Header {
@@ -133,8 +425,8 @@ mod tests {
     }
 
     fn chosen(headers: &[Header]) -> (usize, String) {
-        let layer = choose(headers).unwrap();
-        (layer.part, layer.prefix)
+        let layer = choose(headers).unwrap().layer;
+        (layer.part(), layer.members[0].prefix.clone())
     }
 
     #[test]
@@ -149,14 +441,86 @@ mod tests {
         assert_eq!(chosen(&[beauty]), (0, "beauty.".into()));
         let lower = part(None, &["C.b", "C.g", "C.r"]);
         assert_eq!(chosen(&[lower]), (0, "C.".into()));
-        let grey = choose(&[part(None, &["A", "Y"])]).unwrap();
-        assert_eq!(grey.roles, [Role::Component(3), Role::Luminance]);
+        let grey = choose(&[part(None, &["A", "Y"])]).unwrap().layer;
+        assert_eq!(grey.members[0].roles, [Role::Component(3), Role::Luminance]);
     }
 
     #[test]
-    fn positions_and_chroma_are_no_picture() {
-        for channels in [&["P.X", "P.Y", "P.Z"][..], &["BY", "RY", "Y"], &["Z"], &["R", "G"]] {
-            assert!(choose(&[part(None, channels)]).is_err(), "{channels:?}");
+    fn names_of_parts_count_like_names_of_layers() {
+        const RGB: &[&str] = &["B", "G", "R"];
+        for (first, second, want) in [
+            ("albedo", "rgba", "part rgba"),
+            ("ViewLayer.Albedo", "ViewLayer.Combined", "part ViewLayer.Combined"),
+            ("diffuse", "Beauty", "part Beauty"),
+        ] {
+            let choice = choose(&[part(Some(first), RGB), part(Some(second), RGB)]).unwrap();
+            assert_eq!((choice.layer.part(), choice.name.as_deref()), (1, Some(want)));
+            assert_eq!(choice.notes, [""; 0]);
         }
+        let unnamed = choose(&[part(Some("rgba"), RGB), part(None, RGB)]).unwrap();
+        assert_eq!(unnamed.layer.part(), 1);
+        let tie = choose(&[part(Some("a"), RGB), part(Some("b"), RGB)]).unwrap();
+        assert_eq!((tie.layer.part(), tie.notes.len()), (0, 1));
+        assert!(tie.notes[0].contains("part a was taken, and not part b"), "{}", tie.notes[0]);
+        let alone = choose(&[part(Some("albedo"), RGB)]).unwrap();
+        assert_eq!((alone.name, alone.notes.len()), (None, 0));
+    }
+
+    #[test]
+    fn long_names_xyz_chroma_and_lone_channels_are_pictures() {
+        let roles = |channels: &[&str]| {
+            let choice = choose(&[part(None, channels)]).unwrap();
+            (choice.layer.colours, choice.layer.members[0].roles.clone(), choice.notes.len())
+        };
+        let [r, g, b, a] = [0, 1, 2, 3].map(Role::Component);
+        assert_eq!(roles(&["alpha", "blue", "green", "red"]), (Colours::Rgb, vec![a, b, g, r], 0));
+        assert_eq!(roles(&["Blue", "GREEN", "Red"]), (Colours::Rgb, vec![b, g, r], 0));
+        assert_eq!(roles(&["B", "G", "R", "red"]), (Colours::Rgb, vec![b, g, r, Role::Other], 0));
+        assert_eq!(roles(&["X", "Y", "Z"]), (Colours::Xyz, vec![r, g, b], 1));
+        let chroma = vec![Role::Chroma(2), Role::Chroma(0), Role::Luminance];
+        assert_eq!(roles(&["BY", "RY", "Y"]), (Colours::LumaChroma, chroma, 0));
+        assert_eq!(roles(&["R"]), (Colours::Grey, vec![Role::Luminance], 1));
+        assert_eq!(roles(&["A", "R", "Z"]), (Colours::Grey, vec![a, Role::Luminance, Role::Other], 1));
+        assert_eq!(roles(&["A", "depth"]), (Colours::Grey, vec![a, Role::Luminance], 1));
+        assert_eq!(roles(&["A"]), (Colours::Grey, vec![Role::Luminance], 1));
+    }
+
+    #[test]
+    fn positions_and_halves_of_pictures_are_none() {
+        for channels in [&["P.X", "P.Y", "P.Z"][..], &["BY", "Y"], &["Z", "id"], &["R", "G"]] {
+            let error = choose(&[part(None, channels)]).unwrap_err().to_string();
+            assert!(error.contains("R, G and B") && error.ends_with(&channels.join(", ")), "{error}");
+        }
+        let many: Vec<String> = (0..40_000).map(|n| format!("{n}")).collect();
+        let many: Vec<&str> = many.iter().map(String::as_str).collect();
+        assert!(choose(&[part(None, &many)]).unwrap_err().to_string().ends_with("9 and 39990 more"));
+    }
+
+    #[test]
+    fn colours_in_parts_are_put_together_where_their_windows_are_one() {
+        let mut parts = [part(Some("r"), &["R"]), part(Some("g"), &["G"]), part(Some("b"), &["B", "Z"])];
+        let choice = choose(&parts).unwrap();
+        let members: Vec<_> = choice.layer.members.iter().map(|member| (member.part, member.roles.clone())).collect();
+        let [r, g, b] = [0, 1, 2].map(Role::Component);
+        assert_eq!(members, [(0, vec![r]), (1, vec![g]), (2, vec![b, Role::Other])]);
+        parts[1].layer_size = Vec2(2, 1);
+        assert!(choose(&parts).unwrap_err().to_string().contains("different windows"));
+    }
+
+    #[test]
+    fn the_first_view_is_the_picture_and_the_others_are_named() {
+        let mut one = part(None, &["B", "G", "R", "right.B", "right.G", "right.R"]);
+        one.own_attributes.multi_view_names = Some(vec![Text::from("left"), Text::from("right")]);
+        let choice = choose(&[one]).unwrap();
+        assert_eq!((choice.layer.members[0].prefix.as_str(), choice.name.as_deref()), ("", Some("view left")));
+        assert!(choice.notes[0].contains("left is the picture, and right"), "{:?}", choice.notes);
+        let parts = ["right", "left"].map(|view| {
+            let mut header = part(Some(&format!("rgba_{view}")), &["B", "G", "R"]);
+            header.own_attributes.view_name = Some(Text::from(view));
+            header
+        });
+        let choice = choose(&parts).unwrap();
+        assert_eq!((choice.layer.part(), choice.name.as_deref()), (0, Some("part rgba_right")));
+        assert_eq!(choice.notes.len(), 1, "{:?}", choice.notes);
     }
 }

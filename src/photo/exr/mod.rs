@@ -1,13 +1,30 @@
-//! OpenEXR through the `exr` crate's blocks: half, float and uint; RGB(A) and Y(A); scan lines and tiles.
+//! OpenEXR: half, float and uint; RGB(A), Y(A), luminance and chroma, XYZ; scan lines and tiles.
+//!
+//! | module | what |
+//! | --- | --- |
+//! | `names`, `layer` | which channels are the picture |
+//! | `blocks` | the file as a container: where its compressed blocks are, and which are missing |
+//! | `guard` | whether a block can be what it says |
+//! | `unpack` | a block's bytes, by the decoders of the `exr` crate |
+//! | `picture` | blocks into pixels and kept channels; with `lines` and `chroma` |
+//! | `read`, `write` | a file into a photo, and back |
 //!
 //! One layer becomes the photo's pixels ([`layer`]). The other channels of its part are kept as bytes, the other parts
 //! as the compressed chunks that they are in the file, and the headers whole, so that [`write()`] can put all of it
 //! back. Of a part with resolution levels only the largest level is kept: the others would show the picture without
-//! its glare. A lossy compression becomes ZIP: the pixels would suffer twice. The crate knows no deep data.
+//! its glare. A lossy compression becomes ZIP: the pixels would suffer twice. A picture with subsampled channels goes
+//! back as the chunks that it came in if it is still the same; else its colours become R, G, B of full resolution.
+//! Deep data is refused.
 
+mod blocks;
+mod chroma;
+mod guard;
 mod layer;
 mod lines;
+mod names;
+mod picture;
 mod read;
+mod unpack;
 mod write;
 
 use std::fmt;
@@ -18,23 +35,40 @@ use exr::meta::Headers;
 pub(super) use read::read;
 pub(super) use write::write;
 
+use super::Reason;
 use layer::Layer;
+use picture::Planes;
 
 /// What an OpenEXR file holds beside the photo's pixels.
 pub(super) struct Rest {
-    /// Every part's header; the main one is of its largest level only.
+    /// Every part's header; those of the picture are of their largest level only.
     headers: Headers,
-    /// Which part, and which of its channels, the photo's pixels are.
+    /// Which parts, and which of their channels, the photo's pixels are.
     layer: Layer,
-    /// For each channel of the main part, its samples in the machine's byte order, row by row, if they are carried.
-    planes: Vec<Option<Vec<u8>>>,
-    /// The other parts' chunks, each with its index within its part.
+    /// For each member of the layer, the channels that are carried.
+    planes: Vec<Planes>,
+    /// The other parts' chunks, each with its index within its part; also the picture's, if it is subsampled.
     chunks: Vec<(usize, Chunk)>,
+    /// Whether some of the picture's channels are subsampled, and its chunks kept.
+    is_subsampled: bool,
+    /// The shares of red, green and blue in luminance that chroma was read with.
+    weights: [f64; 3],
 }
 
 impl fmt::Debug for Rest {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let channels: usize = self.headers.iter().map(|header| header.channels.list.len()).sum();
         write!(f, "Rest {{ {} parts, {channels} channels, {:?} }}", self.headers.len(), self.layer)
+    }
+}
+
+/// The crate's reasons, in words that stand alone.
+fn explain(error: exr::error::Error) -> Reason {
+    match error {
+        exr::error::Error::Io(error) => error.into(),
+        exr::error::Error::Invalid(text) if text.contains("missing bytes") => "the file is cut short".into(),
+        exr::error::Error::Invalid(text) => format!("the file is damaged: {text}").into(),
+        exr::error::Error::NotSupported(text) => format!("it needs what vglare cannot do: {text}").into(),
+        aborted @ exr::error::Error::Aborted => aborted.to_string().into(),
     }
 }

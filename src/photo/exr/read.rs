@@ -1,149 +1,104 @@
 //! An OpenEXR file into a photo.
 
-use std::collections::HashMap;
 use std::io::{BufRead, Seek};
 use std::sync::Arc;
 
-use exr::block::chunk::{Chunk, TileCoordinates};
-use exr::block::reader::ChunksReader;
-use exr::block::{self, UncompressedBlock};
+use exr::block::chunk::{Chunk, CompressedBlock, TileCoordinates};
 use exr::math::Vec2;
+use exr::meta::BlockDescription;
 use exr::meta::attribute::{Chromaticities, LevelMode, SampleType};
 use exr::meta::header::Header;
-use exr::meta::{BlockDescription, MetaData};
 use glam::DVec2;
 use rayon::prelude::*;
 
 use super::super::read::check_size;
-use super::super::{Alpha, Depth, Format, Photo, Primaries, ReadOptions, Reason, Source, zeroed};
-use super::Rest;
-use super::layer::{Layer, Role, choose};
-use super::lines::Scratch;
+use super::super::{Alpha, Depth, Format, Photo, Primaries, ReadOptions, Reason, Source};
+use super::blocks::{Block, Blocks};
+use super::layer::{Choice, Colours, Layer, choose};
+use super::picture::Picture;
+use super::unpack::{is_plain, unpack};
+use super::write::zero_chunk;
+use super::{Rest, explain};
 use crate::frame::{Frame, Window};
 
 /// Blocks that are decompressed together: enough to keep every thread busy, few enough to stay small.
 const BLOCKS_A_THREAD: usize = 4;
 
-/// Bytes that a block may claim to have: decompression takes the memory before it looks.
-const LARGEST_BLOCK: usize = 1 << 32;
+/// The least share of green in luminance by which luminance and chroma give green.
+const LEAST_GREEN: f64 = 1e-3;
 
-pub fn read(reader: impl BufRead + Seek, _options: &ReadOptions) -> Result<Photo, Reason> {
-    let reader = block::read(reader, false).map_err(explain)?;
-    let layer = choose(reader.headers())?;
-    let header = reader.headers()[layer.part].clone();
-    let mut picture = Picture::new(&layer, &header)?;
-    let is_wanted = |tile: TileCoordinates| tile.level_index == Vec2(0, 0);
-    let mut reader =
-        reader.filter_chunks(false, |_, tile, block| block.layer != layer.part || is_wanted(tile)).map_err(explain)?;
-    let meta = reader.meta_data().clone();
-    let mut places = Places::new(&meta, layer.part);
+pub fn read(reader: impl BufRead + Seek, options: &ReadOptions) -> Result<Photo, Reason> {
+    let mut blocks = Blocks::open(reader)?;
+    let headers = blocks.meta.headers.clone();
+    let Choice { layer, name, mut notes } = choose(&headers)?;
+    let (source, doubts) = source(&layer, &headers, options);
+    notes.extend(doubts);
+    let mut picture = Picture::new(&layer, &headers)?;
+    let wanted = |part: usize, tile: TileCoordinates| layer.member(part).is_none() || tile.level_index == Vec2(0, 0);
+    let gaps = blocks.find(wanted)?;
+    let has_gaps = gaps.is_some();
+    if let Some(gaps) = gaps {
+        notes.push(gaps.answer(options.missing)?);
+    }
+    let is_subsampled = layer.members.iter().any(|member| !is_plain(&headers[member.part].channels));
     let mut chunks = Vec::new();
     let batch = BLOCKS_A_THREAD * rayon::current_num_threads();
     loop {
-        let read: Vec<Chunk> = reader.by_ref().take(batch).collect::<Result<_, _>>().map_err(explain)?;
+        let next = (0..batch).map_while(|_| blocks.next(wanted).transpose());
+        let read: Vec<Block> = next.collect::<Result<_, _>>()?;
         if read.is_empty() {
             break;
         }
-        let (main, others): (Vec<_>, Vec<_>) = read.into_iter().partition(|chunk| chunk.layer_index == layer.part);
-        for chunk in others {
-            chunks.push((places.take(&meta, &chunk)?, chunk));
+        let (main, others): (Vec<_>, Vec<_>) =
+            read.into_iter().partition(|block| layer.member(block.chunk.layer_index).is_some());
+        chunks.extend(others.into_iter().map(|block| (block.index, block.chunk)));
+        if is_subsampled && !has_gaps {
+            chunks.extend(main.iter().map(|block| (block.index, block.chunk.clone())));
         }
-        main.iter().try_for_each(|chunk| places.take(&meta, chunk).map(drop))?;
-        let blocks = main.into_par_iter().map(|chunk| UncompressedBlock::decompress_chunk(chunk, &meta, false));
-        for block in blocks.collect::<Result<Vec<_>, _>>().map_err(explain)? {
-            picture.insert(&block);
+        insert(&mut picture, &layer, &headers, main.into_iter().map(|block| (block.tile, block.chunk)).collect())?;
+    }
+    for part in 0..headers.len() {
+        let absent: Vec<_> = blocks.absent(part).filter(|&(_, tile)| wanted(part, tile)).collect();
+        if !has_gaps && !absent.is_empty() {
+            return Err(format!("the file is damaged: {} of its blocks are missing", absent.len()).into());
+        }
+        // The parts that ride along are whole in what is written.
+        for (index, tile) in absent.into_iter().filter(|_| layer.member(part).is_none()) {
+            chunks.push((index, zero_chunk(&headers, part, tile)?));
         }
     }
-    if places.free() > 0 {
-        return Err(format!("{} of its blocks are missing", places.free()).into());
-    }
-    let Picture { pixels, planes, .. } = picture;
-    let mut headers = meta.headers;
-    let source = source(&layer, &header);
-    let frame = frame(&header)?;
-    headers[layer.part] = largest_level(header);
-    let rest = Rest { headers, layer, planes, chunks };
-    Ok(Photo { frame, pixels, source: Source { exr: Some(Arc::new(rest)), ..source } })
+    let weights = luminance_weights(source.primaries, options);
+    let (pixels, planes) = picture.finish(weights, has_gaps);
+    let frame = frame(&headers[layer.part()])?;
+    let is_main = |part| layer.member(part).is_some();
+    let levels = |(part, header)| if is_main(part) { largest_level(header) } else { header };
+    let headers = headers.into_iter().enumerate().map(levels).collect();
+    let rest = Rest { headers, layer, planes, chunks, weights, is_subsampled: is_subsampled && !has_gaps };
+    Ok(Photo { frame, pixels, source: Source { exr: Some(Arc::new(rest)), picture: name, notes, ..source } })
 }
 
-/// The blocks that are still to come, so that none comes twice and none is missing.
-struct Places(Vec<HashMap<TileCoordinates, usize>>);
-
-impl Places {
-    fn new(meta: &MetaData, main: usize) -> Self {
-        let place = |(part, header): (usize, &Header)| {
-            let blocks = header.blocks_increasing_y_order().enumerate().map(|(index, tile)| (tile.location, index));
-            blocks.filter(|(tile, _)| part != main || tile.level_index == Vec2(0, 0)).collect()
+/// Decompresses blocks of the picture into it.
+pub(super) fn insert(
+    picture: &mut Picture,
+    layer: &Layer,
+    headers: &[Header],
+    blocks: Vec<(TileCoordinates, Chunk)>,
+) -> Result<(), Reason> {
+    let unpacked = blocks.into_par_iter().map(|(tile, chunk)| {
+        let header = &headers[chunk.layer_index];
+        let area = header.get_absolute_block_pixel_coordinates(tile).map_err(explain)?;
+        let member = layer.member(chunk.layer_index).ok_or("a block is of another part")?;
+        let bytes = match chunk.compressed_block {
+            CompressedBlock::ScanLine(block) => block.compressed_pixels_le,
+            CompressedBlock::Tile(block) => block.compressed_pixels_le,
+            _ => return Err("it holds deep data, which vglare does not read".into()),
         };
-        Self(meta.headers.iter().enumerate().map(place).collect())
+        Ok((member, area, unpack(header, area, bytes)?))
+    });
+    for (member, area, bytes) in unpacked.collect::<Result<Vec<_>, Reason>>()? {
+        picture.insert(member, area, &bytes);
     }
-
-    /// The index of a chunk within its part.
-    fn take(&mut self, meta: &MetaData, chunk: &Chunk) -> Result<usize, Reason> {
-        let header = meta.headers.get(chunk.layer_index).ok_or("a block is of no part")?;
-        let tile = header.get_block_data_indices(&chunk.compressed_block).map_err(explain)?;
-        Ok(self.0[chunk.layer_index].remove(&tile).ok_or("a block is there twice, or is where none belongs")?)
-    }
-
-    fn free(&self) -> usize {
-        self.0.iter().map(HashMap::len).sum()
-    }
-}
-
-/// The samples of the main part, as far as they are read.
-struct Picture<'h> {
-    header: &'h Header,
-    layer: &'h Layer,
-    pixels: Vec<[f32; 4]>,
-    planes: Vec<Option<Vec<u8>>>,
-    scratch: Scratch,
-}
-
-impl<'h> Picture<'h> {
-    fn new(layer: &'h Layer, header: &'h Header) -> Result<Self, Reason> {
-        if let Some(channel) = header.channels.list.iter().find(|c| c.sampling != Vec2(1, 1)) {
-            return Err(format!("the channel {} is subsampled, which vglare does not read", channel.name).into());
-        }
-        if header.max_block_byte_size() > LARGEST_BLOCK {
-            return Err("its blocks are too large to be true".into());
-        }
-        let Vec2(width, height) = header.layer_size;
-        let count = check_size(u32::try_from(width)?, u32::try_from(height)?)?;
-        let planes = header.channels.list.iter().enumerate().map(|(index, channel)| {
-            let bytes = count * channel.sample_type.bytes_per_sample();
-            layer.carries(index, channel).then(|| zeroed(bytes)).transpose()
-        });
-        let planes = planes.collect::<Result<_, _>>()?;
-        Ok(Self { header, layer, pixels: zeroed(count)?, planes, scratch: Scratch::default() })
-    }
-
-    fn insert(&mut self, block: &UncompressedBlock) {
-        let width = self.header.layer_size.width();
-        let opaque = !self.layer.has_alpha();
-        for line in block.lines(&self.header.channels) {
-            let at = line.location;
-            let kind = self.header.channels.list[at.channel].sample_type;
-            let start = at.position.y() * width + at.position.x();
-            if let Some(plane) = &mut self.planes[at.channel] {
-                plane[start * kind.bytes_per_sample()..][..line.value.len()].copy_from_slice(line.value);
-            }
-            let pixels = &mut self.pixels[start..start + at.sample_count];
-            match self.layer.roles[at.channel] {
-                Role::Other => continue,
-                Role::Component(component) => {
-                    self.scratch.load(line.value, kind);
-                    pixels.iter_mut().zip(&self.scratch.float).for_each(|(pixel, &v)| pixel[component] = v);
-                }
-                Role::Luminance => {
-                    self.scratch.load(line.value, kind);
-                    pixels.iter_mut().zip(&self.scratch.float).for_each(|(pixel, &v)| pixel[..3].fill(v));
-                }
-            }
-            if opaque {
-                pixels.iter_mut().for_each(|pixel| pixel[3] = 1.0);
-            }
-        }
-    }
+    Ok(())
 }
 
 /// The picture and the window that a header describes.
@@ -162,28 +117,65 @@ pub(super) fn frame(header: &Header) -> Result<Frame, Reason> {
     Ok(Frame { width, height, window })
 }
 
-fn source(layer: &Layer, header: &Header) -> Source {
+/// What the headers say of the picture, and what is to be told of it.
+fn source(layer: &Layer, headers: &[Header], options: &ReadOptions) -> (Source, Vec<String>) {
     // Channels may differ; the best of them tells.
     let depth = |kind: SampleType| match kind {
         SampleType::F16 => (1, Depth::Half),
         SampleType::U32 => (0, Depth::Uint),
         SampleType::F32 => (2, Depth::Float),
     };
-    let best = layer.colours(header).map(|c| depth(c.sample_type)).max_by_key(|(rank, _)| *rank);
-    Source {
+    let channels = layer.colour_channels(headers);
+    let best = channels.iter().map(|c| depth(c.sample_type)).max_by_key(|(rank, _)| *rank);
+    let mut notes = Vec::new();
+    let header = &headers[layer.part()];
+    let aspect = f64::from(header.shared_attributes.pixel_aspect);
+    // The limits of OpenEXR's own sanity check.
+    let pixel_aspect = if (1e-6..=1e6).contains(&aspect) {
+        aspect
+    } else {
+        notes.push(format!("its pixelAspectRatio, {aspect}, makes no sense: its pixels are taken for square"));
+        1.0
+    };
+    // Writers of several parts do not always repeat what is the same in all.
+    let mut all = std::iter::once(header).chain(headers);
+    let chromaticities = all.find_map(|header| header.shared_attributes.chromaticities).map(primaries);
+    let primaries = match chromaticities {
+        _ if layer.colours == Colours::Xyz => Some(Primaries::XYZ),
+        Some(primaries) if primaries.sound().is_none() => {
+            if options.primaries.is_none() {
+                notes.push("its chromaticities span no colour space: its colours are taken for Rec.709's".to_owned());
+            }
+            None
+        }
+        chromaticities => chromaticities.and_then(Primaries::other_than_rec709),
+    };
+    if layer.colours == Colours::LumaChroma {
+        notes.push(
+            "it holds luminance and chroma (Y, RY, BY), which are written as R, G, B once they change".to_owned(),
+        );
+    }
+    let source = Source {
         format: Some(Format::OpenExr),
         depth: best.map_or(Depth::Float, |(_, depth)| depth),
         alpha: if layer.has_alpha() { Alpha::Premultiplied } else { Alpha::None },
-        grey: layer.is_grey(),
-        primaries: header.shared_attributes.chromaticities.and_then(primaries),
+        grey: layer.colours == Colours::Grey,
+        primaries,
+        pixel_aspect,
         ..Source::plain()
-    }
+    };
+    (source, notes)
 }
 
-fn primaries(c: Chromaticities) -> Option<Primaries> {
+fn primaries(c: Chromaticities) -> Primaries {
     let point = |Vec2(x, y): Vec2<f32>| DVec2::new(x.into(), y.into());
-    let all = Primaries { red: point(c.red), green: point(c.green), blue: point(c.blue), white: point(c.white) };
-    all.other_than_rec709()
+    Primaries { red: point(c.red), green: point(c.green), blue: point(c.blue), white: point(c.white) }
+}
+
+/// The shares in luminance that chroma was reckoned with.
+fn luminance_weights(primaries: Option<Primaries>, options: &ReadOptions) -> [f64; 3] {
+    let weights = options.primaries.or(primaries).unwrap_or(Primaries::REC709).luminance_weights();
+    if weights[1] < LEAST_GREEN { Primaries::REC709.luminance_weights() } else { weights }
 }
 
 fn largest_level(header: Header) -> Header {
@@ -194,16 +186,5 @@ fn largest_level(header: Header) -> Header {
             header.with_encoding(compression, BlockDescription::Tiles(tiles), order)
         }
         _ => header,
-    }
-}
-
-/// The crate's reasons, in words that stand alone.
-pub(super) fn explain(error: exr::error::Error) -> Reason {
-    match error {
-        exr::error::Error::Io(error) => error.into(),
-        exr::error::Error::Invalid(text) if text.contains("missing bytes") => "the file is cut short".into(),
-        exr::error::Error::Invalid(text) => format!("the file is damaged: {text}").into(),
-        exr::error::Error::NotSupported(text) => format!("it needs what vglare cannot do: {text}").into(),
-        aborted @ exr::error::Error::Aborted => aborted.to_string().into(),
     }
 }

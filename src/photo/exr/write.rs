@@ -1,30 +1,30 @@
 //! A photo into an OpenEXR file.
 
-use std::io::{Seek, Write};
+use std::io::{Seek, SeekFrom, Write};
 
-use exr::block::writer::{ChunkWriter, ChunksWriter};
-use exr::block::{self, BlockIndex, UncompressedBlock};
+use exr::block::chunk::{Chunk, CompressedBlock, CompressedScanLineBlock, CompressedTileBlock, TileCoordinates};
 use exr::compression::Compression;
-use exr::error::UnitResult;
 use exr::math::Vec2;
 use exr::meta::attribute::{
     ChannelDescription, ChannelList, Chromaticities, IntegerBounds, LineOrder, SampleType, Text,
 };
 use exr::meta::header::{Header, ImageAttributes, LayerAttributes};
-use exr::meta::{BlockDescription, Headers, MetaData};
+use exr::meta::{BlockDescription, Headers, MetaData, TileIndices, magic_number};
 use glam::DVec2;
 use rayon::prelude::*;
 
 use super::super::{Alpha, Depth, Photo, Primaries, Reason, display};
-use super::Rest;
-use super::layer::Role;
+use super::layer::{Member, Role};
 use super::lines::Scratch;
-use super::read::{explain, frame};
+use super::picture::{Picture, Planes};
+use super::read::{frame, insert};
+use super::unpack::{self, is_plain, lines, pack, unsampled};
+use super::{Rest, explain, guard};
 
 /// Blocks that are compressed together.
 const BLOCKS_A_THREAD: usize = 4;
 
-/// What a channel of the main part is filled with.
+/// What a channel of the picture's parts is filled with.
 #[derive(Clone, Copy)]
 struct Fill<'p> {
     /// Component of the photo's pixels; none for a channel that is carried.
@@ -33,7 +33,7 @@ struct Fill<'p> {
     was: Option<&'p [u8]>,
 }
 
-/// The main part of the file to be.
+/// A part of the file to be that holds the photo's pixels.
 struct Main<'p> {
     photo: &'p Photo,
     part: usize,
@@ -43,29 +43,49 @@ struct Main<'p> {
 }
 
 pub fn write(writer: impl Write + Seek, photo: &Photo, depth: Depth) -> Result<(), Reason> {
-    let rest = photo.source.exr.as_deref();
-    let (mut headers, part) = match rest {
-        Some(rest) => (rest.headers.clone(), rest.layer.part),
-        None => (Headers::from_elem(plain_header(photo), 1), 0),
+    let Some(rest) = photo.source.exr.as_deref() else {
+        let mut header = plain_header(photo);
+        let channels = with_depth(plain_channels(photo), depth);
+        let main = Main::new(photo, 0, channels, &mut header);
+        return Container::new(writer, Headers::from_elem(header, 1))?.finish(&[main], &[]);
     };
-    check_window(photo, &headers[part])?;
-    let channels = channels(photo, rest, depth);
-    let (list, fills): (Vec<_>, _) = channels.into_iter().unzip();
-    let main = Main { photo, part, fills, premultiply: photo.source.alpha == Alpha::Straight };
-    headers[part].channels = ChannelList::new(list.into_iter().collect());
-    headers[part] = without_loss(headers[part].clone());
-    block::write(writer, headers, false, |meta, writer| {
-        for part in 0..meta.headers.len() {
-            if part == main.part {
-                main.write(&meta, writer)?;
-            } else if let Some(rest) = rest {
-                let chunks = rest.chunks.iter().filter(|(_, chunk)| chunk.layer_index == part);
-                chunks.cloned().try_for_each(|(index, chunk)| writer.write_chunk(index, chunk))?;
-            }
+    let mut headers = rest.headers.clone();
+    check_window(photo, &headers[rest.layer.part()])?;
+    let is_main = |chunk: &Chunk| rest.layer.member(chunk.layer_index).is_some();
+    if rest.is_subsampled {
+        if depth == photo.source.depth && is_unchanged(photo, rest)? {
+            let chunks: Vec<_> = rest.chunks.iter().collect();
+            return Container::new(writer, headers)?.finish(&[], &chunks);
         }
-        Ok(())
-    })
-    .map_err(explain)
+    }
+    let grey = display::is_grey(photo);
+    let mut mains = Vec::new();
+    for (member, planes) in rest.layer.members.iter().zip(&rest.planes) {
+        let header = &mut headers[member.part];
+        let mut channels = carried_channels(header, member, planes, grey);
+        // Only a depth other than the input's changes a channel: the input's may differ among themselves.
+        if depth != photo.source.depth {
+            channels = with_depth(channels, depth);
+        }
+        mains.push(Main::new(photo, member.part, channels, header));
+    }
+    let chunks: Vec<_> = rest.chunks.iter().filter(|(_, chunk)| !is_main(chunk)).collect();
+    Container::new(writer, headers)?.finish(&mains, &chunks)
+}
+
+/// Whether the pixels are still those of the chunks that a subsampled picture came in.
+fn is_unchanged(photo: &Photo, rest: &Rest) -> Result<bool, Reason> {
+    let mut picture = Picture::new(&rest.layer, &rest.headers)?;
+    let of_picture = rest.chunks.iter().filter(|(_, chunk)| rest.layer.member(chunk.layer_index).is_some());
+    let mut blocks = Vec::new();
+    for (_, chunk) in of_picture {
+        let header = &rest.headers[chunk.layer_index];
+        blocks.push((header.get_block_data_indices(&chunk.compressed_block).map_err(explain)?, chunk.clone()));
+    }
+    insert(&mut picture, &rest.layer, &rest.headers, blocks)?;
+    let (pixels, _) = picture.finish(rest.weights, false);
+    let same = |a: &[f32; 4], b: &[f32; 4]| a.map(f32::to_bits) == b.map(f32::to_bits);
+    Ok(pixels.len() == photo.pixels.len() && pixels.par_iter().zip(&photo.pixels).all(|(a, b)| same(a, b)))
 }
 
 /// The picture and its window must be those that the header describes.
@@ -82,11 +102,12 @@ fn plain_header(photo: &Photo) -> Header {
     let size = Vec2(window.width as usize, window.height as usize);
     let bounds = IntegerBounds::new((0, 0), (frame.width as usize, frame.height as usize));
     let chromaticities = photo.source.primaries.map(chromaticities);
+    let pixel_aspect = photo.source.pixel_aspect as f32;
     let place = LayerAttributes { layer_position: Vec2(window.x, window.y), ..LayerAttributes::default() };
     Header::new(Text::from("picture"), size, Default::default())
         .with_encoding(Compression::ZIP16, BlockDescription::ScanLines, LineOrder::Increasing)
         .with_attributes(place)
-        .with_shared_attributes(ImageAttributes { chromaticities, ..ImageAttributes::new(bounds) })
+        .with_shared_attributes(ImageAttributes { chromaticities, pixel_aspect, ..ImageAttributes::new(bounds) })
 }
 
 fn chromaticities(primaries: Primaries) -> Chromaticities {
@@ -98,102 +119,199 @@ fn chromaticities(primaries: Primaries) -> Chromaticities {
 fn without_loss(header: Header) -> Header {
     let lossless = |c: &ChannelDescription| header.compression.is_lossless_for(c.sample_type);
     // PXR24 and B44A keep some types, but not every NaN.
-    if header.channels.list.iter().all(lossless) && header.compression.preserves_nan_bits() {
+    let keeps = header.channels.list.iter().all(lossless) && header.compression.preserves_nan_bits();
+    // What sees a block as bytes alone does not mind subsampling.
+    let by_bytes = [Compression::Uncompressed, Compression::RLE, Compression::ZIP1, Compression::ZIP16];
+    if keeps && (is_plain(&header.channels) || by_bytes.contains(&header.compression)) {
         return header;
     }
     let (blocks, order) = (header.blocks, header.line_order);
     header.with_encoding(Compression::ZIP16, blocks, order)
 }
 
-/// The channels of the main part, sorted by name as the format wants it, and what fills them.
-fn channels<'p>(photo: &Photo, rest: Option<&'p Rest>, depth: Depth) -> Vec<(ChannelDescription, Fill<'p>)> {
-    let grey = display::is_grey(photo);
-    let mut channels = match rest {
-        Some(rest) => carried_channels(rest, grey),
-        None => plain_channels(photo, grey),
-    };
+type Channels<'p> = Vec<(ChannelDescription, Fill<'p>)>;
+
+/// The picture's channels by another depth.
+fn with_depth(mut channels: Channels, depth: Depth) -> Channels {
     let kind = match depth {
         Depth::Half => SampleType::F16,
         _ => SampleType::F32,
     };
-    // Only a depth other than the input's changes a channel: the input's may differ among themselves.
-    if rest.is_none() || depth != photo.source.depth {
-        for (channel, fill) in channels.iter_mut().filter(|(_, fill)| fill.component.is_some()) {
-            (channel.sample_type, fill.was) = (kind, None);
-        }
+    for (channel, fill) in channels.iter_mut().filter(|(_, fill)| fill.component.is_some()) {
+        (channel.sample_type, fill.was) = (kind, None);
     }
-    channels.sort_by(|(a, _), (b, _)| a.name.as_slice().cmp(b.name.as_slice()));
     channels
 }
 
-fn plain_channels<'p>(photo: &Photo, grey: bool) -> Vec<(ChannelDescription, Fill<'p>)> {
-    let colours: &[(&str, usize)] = if grey { &[("Y", 0)] } else { &[("B", 2), ("G", 1), ("R", 0)] };
+fn plain_channels<'p>(photo: &Photo) -> Channels<'p> {
+    let colours: &[(&str, usize)] = if display::is_grey(photo) { &[("Y", 0)] } else { &[("B", 2), ("G", 1), ("R", 0)] };
     let alpha = (photo.source.alpha != Alpha::None).then_some(("A", 3));
     let fill = |component| Fill { component: Some(component), was: None };
     let named = alpha.into_iter().chain(colours.iter().copied());
     named.map(|(name, component)| (ChannelDescription::named(name, SampleType::F32), fill(component))).collect()
 }
 
-fn carried_channels(rest: &Rest, grey: bool) -> Vec<(ChannelDescription, Fill<'_>)> {
-    let layer = &rest.layer;
-    let list = rest.headers[layer.part].channels.list.iter();
+/// The channels of a part of the picture, where all that is of the picture gets its pixels' full resolution.
+fn carried_channels<'p>(header: &Header, member: &Member, planes: &'p Planes, grey: bool) -> Channels<'p> {
     let mut channels = Vec::new();
-    for ((channel, &role), plane) in list.zip(&layer.roles).zip(&rest.planes) {
+    for ((channel, &role), plane) in header.channels.list.iter().zip(&member.roles).zip(planes) {
         let was = plane.as_deref();
+        let full = ChannelDescription { sampling: Vec2(1, 1), ..channel.clone() };
         match role {
             Role::Other => channels.push((channel.clone(), Fill { component: None, was })),
-            Role::Component(component) => channels.push((channel.clone(), Fill { component: Some(component), was })),
-            Role::Luminance if grey => channels.push((channel.clone(), Fill { component: Some(0), was })),
+            Role::Component(component) => channels.push((full, Fill { component: Some(component), was })),
+            Role::Luminance if grey => channels.push((full, Fill { component: Some(0), was })),
             // Luminance that has got a colour becomes three channels.
             Role::Luminance => {
                 for (component, name) in ["R", "G", "B"].iter().enumerate() {
-                    let name = Text::from(format!("{}{name}", layer.prefix).as_str());
+                    let name = Text::from(format!("{}{name}", member.prefix).as_str());
                     let fill = Fill { component: Some(component), was: None };
-                    channels.push((ChannelDescription { name, ..channel.clone() }, fill));
+                    let quantize_linearly = false;
+                    channels.push((ChannelDescription { name, quantize_linearly, ..full.clone() }, fill));
                 }
             }
+            Role::Chroma(_) => {}
         }
     }
     channels
 }
 
-impl Main<'_> {
-    fn write<W: Write + Seek>(&self, meta: &MetaData, writer: &mut ChunkWriter<W>) -> UnitResult {
-        let blocks: Vec<(usize, BlockIndex)> =
-            meta.enumerate_ordered_header_block_indices().filter(|(_, block)| block.layer == self.part).collect();
-        for batch in blocks.chunks(BLOCKS_A_THREAD * rayon::current_num_threads()) {
-            let compress = |&(index, block): &(usize, BlockIndex)| {
-                self.block(&meta.headers[self.part], block).compress_to_chunk(&meta.headers).map(|chunk| (index, chunk))
+impl<'p> Main<'p> {
+    /// A part whose header gets these channels, sorted by name as the format wants it.
+    fn new(photo: &'p Photo, part: usize, mut channels: Channels<'p>, header: &mut Header) -> Self {
+        channels.sort_by(|(a, _), (b, _)| a.name.as_slice().cmp(b.name.as_slice()));
+        let (list, fills): (Vec<_>, _) = channels.into_iter().unzip();
+        header.channels = ChannelList::new(list.into_iter().collect());
+        *header = without_loss(header.clone());
+        Self { photo, part, fills, premultiply: photo.source.alpha == Alpha::Straight }
+    }
+
+    fn write<W: Write + Seek>(&self, container: &mut Container<W>) -> Result<(), Reason> {
+        let header = container.headers[self.part].clone();
+        let tiles: Vec<_> = header.enumerate_ordered_blocks().collect();
+        for batch in tiles.chunks(BLOCKS_A_THREAD * rayon::current_num_threads()) {
+            let compress = |&(index, indices): &(usize, TileIndices)| {
+                let area = header.get_absolute_block_pixel_coordinates(indices.location).map_err(explain)?;
+                let packed = pack(&header, area, self.block(&header, area))?;
+                Ok((index, chunk(&header, self.part, indices.location, area, packed)))
             };
-            let chunks = batch.par_iter().map(compress).collect::<Result<Vec<_>, _>>()?;
-            chunks.into_iter().try_for_each(|(index, chunk)| writer.write_chunk(index, chunk))?;
+            for (index, chunk) in batch.par_iter().map(compress).collect::<Result<Vec<_>, Reason>>()? {
+                container.put(index, &chunk)?;
+            }
         }
         Ok(())
     }
 
-    fn block(&self, header: &Header, block: BlockIndex) -> UncompressedBlock {
+    fn block(&self, header: &Header, area: IntegerBounds) -> Vec<u8> {
         let mut scratch = Scratch::default();
-        let width = header.layer_size.width();
-        UncompressedBlock::from_lines(&header.channels, block, |line| {
-            let at = line.location;
-            let kind = header.channels.list[at.channel].sample_type;
-            let start = at.position.y() * width + at.position.x();
-            let fill = self.fills[at.channel];
-            let was = fill.was.map(|was| &was[start * kind.bytes_per_sample()..][..line.value.len()]);
+        let mut bytes = vec![0; unpack::size(&header.channels, area)];
+        for line in lines(&header.channels, area) {
+            let channel = &header.channels.list[line.channel];
+            let (kind, columns) = (channel.sample_type, unpack::plane(channel, header.layer_size).0);
+            let start = line.at.1 * columns + line.at.0;
+            let value = &mut bytes[line.bytes];
+            let fill = self.fills[line.channel];
+            let was = fill.was.map(|was| &was[start * kind.bytes_per_sample()..][..value.len()]);
             match (fill.component, was) {
                 (Some(component), was) => {
-                    let pixels = &self.photo.pixels[start..start + at.sample_count];
+                    let pixels = &self.photo.pixels[start..start + line.count];
                     scratch.float.clear();
                     scratch.float.extend(pixels.iter().map(|pixel| self.sample(pixel, component)));
-                    scratch.store(line.value, kind, was);
+                    scratch.store(value, kind, was);
                 }
-                (None, Some(was)) => line.value.copy_from_slice(was),
+                (None, Some(was)) => value.copy_from_slice(was),
                 (None, None) => {}
             }
-        })
+        }
+        bytes
     }
 
     fn sample(&self, pixel: &[f32; 4], component: usize) -> f32 {
         if self.premultiply && component < 3 { pixel[component] * pixel[3] } else { pixel[component] }
+    }
+}
+
+/// A block of nothing but zeros, for a part that lacks it.
+///
+/// # Errors
+/// Where it is too large, or its compression none that can be written.
+pub(super) fn zero_chunk(headers: &[Header], part: usize, tile: TileCoordinates) -> Result<Chunk, Reason> {
+    let header = &headers[part];
+    let area = header.get_absolute_block_pixel_coordinates(tile).map_err(explain)?;
+    let bytes = unpack::size(&header.channels, area);
+    guard::affordable(bytes.saturating_mul(4))?;
+    let packed = pack(header, area, vec![0; bytes])?;
+    Ok(chunk(header, part, tile, area, packed))
+}
+
+fn chunk(header: &Header, part: usize, tile: TileCoordinates, area: IntegerBounds, packed: Vec<u8>) -> Chunk {
+    let compressed_block = match header.blocks {
+        BlockDescription::ScanLines => CompressedBlock::ScanLine(CompressedScanLineBlock {
+            y_coordinate: area.position.y() + header.own_attributes.layer_position.y(),
+            compressed_pixels_le: packed,
+        }),
+        BlockDescription::Tiles(_) => {
+            CompressedBlock::Tile(CompressedTileBlock { coordinates: tile, compressed_pixels_le: packed })
+        }
+    };
+    Chunk { layer_index: part, compressed_block }
+}
+
+/// The file to be: the crate's own writer turns down subsampled channels.
+struct Container<W> {
+    writer: W,
+    headers: Headers,
+    /// Where the table begins, and what it will hold.
+    table: (u64, Vec<Vec<u64>>),
+    position: u64,
+}
+
+impl<W: Write + Seek> Container<W> {
+    /// Writes the headers.
+    fn new(mut writer: W, headers: Headers) -> Result<Self, Reason> {
+        let requirements = MetaData::validate(&unsampled(&headers), false).map_err(explain)?;
+        magic_number::write(&mut writer).map_err(explain)?;
+        requirements.write(&mut writer).map_err(explain)?;
+        Header::write_all(&headers, &mut writer, requirements.has_multiple_layers).map_err(explain)?;
+        let start = writer.stream_position()?;
+        let table: Vec<Vec<u64>> = headers.iter().map(|header| vec![0; header.chunk_count]).collect();
+        let count: usize = table.iter().map(Vec::len).sum();
+        writer.write_all(&vec![0; count * size_of::<u64>()])?;
+        let position = start + (count * size_of::<u64>()) as u64;
+        Ok(Self { writer, headers, table: (start, table), position })
+    }
+
+    fn put(&mut self, index: usize, chunk: &Chunk) -> Result<(), Reason> {
+        self.table.1[chunk.layer_index][index] = self.position;
+        chunk.write(&mut self.writer, self.headers.len()).map_err(explain)?;
+        let part = if self.headers.len() > 1 { 4 } else { 0 };
+        let (place, bytes) = match &chunk.compressed_block {
+            CompressedBlock::ScanLine(block) => (4, block.compressed_pixels_le.len()),
+            CompressedBlock::Tile(block) => (16, block.compressed_pixels_le.len()),
+            _ => return Err("deep data cannot be written".into()),
+        };
+        self.position += (part + place + 4 + bytes) as u64;
+        Ok(())
+    }
+
+    /// Writes the blocks, part by part, and the table.
+    fn finish(mut self, mains: &[Main], chunks: &[&(usize, Chunk)]) -> Result<(), Reason> {
+        let mut chunks = chunks.to_vec();
+        chunks.sort_by_key(|(_, chunk)| chunk.layer_index);
+        let of_part = |part: usize| chunks.partition_point(|(_, chunk)| chunk.layer_index < part);
+        for part in 0..self.headers.len() {
+            if let Some(main) = mains.iter().find(|main| main.part == part) {
+                main.write(&mut self)?;
+            }
+            for (index, chunk) in &chunks[of_part(part)..of_part(part + 1)] {
+                self.put(*index, chunk)?;
+            }
+        }
+        self.writer.seek(SeekFrom::Start(self.table.0))?;
+        for offset in self.table.1.iter().flatten() {
+            self.writer.write_all(&offset.to_le_bytes())?;
+        }
+        self.writer.seek(SeekFrom::Start(self.position))?;
+        Ok(())
     }
 }
