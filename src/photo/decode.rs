@@ -32,7 +32,10 @@ impl Shaper {
     pub fn new(curves: [Curve; 3], primaries: Option<Primaries>) -> Self {
         let primaries = primaries.and_then(Primaries::other_than_rec709);
         let space = primaries.map(|p| p.title().unwrap_or("primaries of their own").to_owned());
-        Self { curves, matrix: primaries.map(Primaries::to_rec709), space }
+        // Rounding would make colours negative that two spaces share.
+        let clean = |entry: f64| if entry.abs() < 1e-9 { 0.0 } else { entry };
+        let matrix = primaries.map(|p| DMat3::from_cols_array(&p.to_rec709().to_cols_array().map(clean)));
+        Self { curves, matrix, space }
     }
 }
 

@@ -144,3 +144,12 @@ fn named_primaries_take_the_place_of_the_profiles() {
     assert_eq!(shaper.matrix, Some(Primaries::REC2020.to_rec709()));
     assert!(notes.is_empty());
 }
+
+#[test]
+fn colours_that_two_spaces_share_are_not_negative() {
+    // Adobe RGB has the red and the blue of Rec. 709.
+    let adobe = with_curve(ColorProfile::new_adobe_rgb(), ToneReprCurve::Lut(vec![563]));
+    for colour in [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.004], [0.7, 0.0, 0.2]] {
+        assert!(light_of(&adobe, colour).iter().all(|&c| c >= 0.0), "{colour:?}");
+    }
+}

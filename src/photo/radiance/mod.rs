@@ -122,29 +122,4 @@ fn held(rgb: [f32; 3]) -> [f32; 3] {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn round_trip(pixels: Vec<[f32; 4]>) -> Vec<[f32; 4]> {
-        let mut file = Vec::new();
-        write(&mut file, &Photo::new(pixels.len() as u32, 1, pixels)).unwrap();
-        read(Cursor::new(file), &ReadOptions::default()).unwrap().pixels
-    }
-
-    #[test]
-    fn extremes_stay_in_place() {
-        let values = [f32::NAN, f32::NEG_INFINITY, -1.0, 1e-45, 1e-39, f32::INFINITY, f32::MAX, LARGEST, 1e38, 0.75];
-        let got = round_trip(values.iter().map(|&v| [v, v, v, 1.0]).collect());
-        let got: Vec<f32> = got.iter().map(|p| p[1]).collect();
-        assert_eq!(got[..5], [0.0; 5]);
-        assert_eq!(got[5..8], [LARGEST; 3]);
-        assert!((got[8] / 1e38 - 1.0).abs() < 0.01 && got[9] == 0.75, "{got:?}");
-    }
-
-    #[test]
-    fn what_was_read_is_written_the_same() {
-        let once =
-            round_trip((0..500).map(|i| [i as f32 * 0.37, (i % 7) as f32 * 1e-3, 2e4 / i as f32, 1.0]).collect());
-        assert_eq!(round_trip(once.clone()), once);
-    }
-}
+mod tests;
