@@ -4,22 +4,53 @@ use glam::{DMat3, Mat3A, Vec3A};
 use image::metadata::Orientation;
 use rayon::prelude::*;
 
+use super::icc::{Profile, Way};
 use super::transfer::Curve;
-use super::{Alpha, Depth, Format, Photo, Primaries, Reason, Source, icc::Profile, zeroed};
+use super::{Alpha, Depth, Format, Photo, Primaries, Reason, Source, zeroed};
 use crate::frame::Frame;
 
 /// What the file says its numbers mean.
 pub(super) enum Encoding {
-    /// A curve, then a matrix to Rec.709 if the primaries differ.
-    Curve(Curve, Option<DMat3>),
+    /// Three curves, then a matrix.
+    Curves(Shaper),
     /// An ICC profile.
     Icc(Profile),
+}
+
+/// A curve for each of red, green and blue, then the way to Rec.709.
+#[derive(Debug, Clone)]
+pub(super) struct Shaper {
+    pub curves: [Curve; 3],
+    /// None if the primaries are Rec.709's.
+    pub matrix: Option<DMat3>,
+    /// What the primaries are called, if they are others.
+    pub space: Option<String>,
+}
+
+impl Shaper {
+    /// Curves, and primaries if the file names any.
+    pub fn new(curves: [Curve; 3], primaries: Option<Primaries>) -> Self {
+        let primaries = primaries.and_then(Primaries::other_than_rec709);
+        let space = primaries.map(|p| p.title().unwrap_or("primaries of their own").to_owned());
+        // Rounding would make colours negative that two spaces share.
+        let clean = |entry: f64| if entry.abs() < 1e-9 { 0.0 } else { entry };
+        let matrix = primaries.map(|p| DMat3::from_cols_array(&p.to_rec709().to_cols_array().map(clean)));
+        Self { curves, matrix, space }
+    }
 }
 
 impl Encoding {
     /// A curve, and primaries if the file names any.
     pub fn new(curve: Curve, primaries: Option<Primaries>) -> Self {
-        Self::Curve(curve, primaries.and_then(Primaries::other_than_rec709).map(Primaries::to_rec709))
+        Self::Curves(Shaper::new([curve.clone(), curve.clone(), curve], primaries))
+    }
+
+    /// The colour space that the samples are in, where its primaries are not Rec.709's.
+    fn space(&self) -> Option<&String> {
+        match self {
+            Self::Curves(shaper) => shaper.space.as_ref(),
+            Self::Icc(profile) => profile.space(),
+        }
     }
 }
 
@@ -43,7 +74,7 @@ pub(super) trait Sample: Copy + Send + Sync {
     /// The encoded value, 0..=1 for integers.
     fn unit(self) -> f32;
     /// Its light, from the table that `all` gave, or by the curve.
-    fn light(self, table: &[f32], curve: Curve) -> f32;
+    fn light(self, table: &[f32], curve: &Curve) -> f32;
 }
 
 impl Sample for u8 {
@@ -57,7 +88,7 @@ impl Sample for u8 {
         f32::from(self) / 255.0
     }
 
-    fn light(self, table: &[f32], _: Curve) -> f32 {
+    fn light(self, table: &[f32], _: &Curve) -> f32 {
         table[usize::from(self)]
     }
 }
@@ -73,7 +104,7 @@ impl Sample for u16 {
         f32::from(self) / 65535.0
     }
 
-    fn light(self, table: &[f32], _: Curve) -> f32 {
+    fn light(self, table: &[f32], _: &Curve) -> f32 {
         table[usize::from(self)]
     }
 }
@@ -89,7 +120,7 @@ impl Sample for f32 {
         self
     }
 
-    fn light(self, _: &[f32], curve: Curve) -> f32 {
+    fn light(self, _: &[f32], curve: &Curve) -> f32 {
         match curve {
             Curve::Linear => self,
             _ => curve.light(f64::from(self)) as f32,
@@ -112,8 +143,11 @@ impl<T: Sample> Raster<T> {
         }
         let mut pixels = zeroed(self.width as usize * self.height as usize)?;
         match encoding {
-            Encoding::Curve(curve, matrix) => self.by_curve(*curve, matrix.as_ref(), &mut pixels),
-            Encoding::Icc(profile) => self.by_profile(profile, &mut pixels)?,
+            Encoding::Curves(shaper) => self.by_curves(shaper, &mut pixels),
+            Encoding::Icc(profile) => match profile.way() {
+                Way::Shaper(shaper) => self.by_curves(shaper, &mut pixels),
+                Way::Tables(_) => self.by_profile(profile, &mut pixels)?,
+            },
         }
         let has_alpha = self.channels.is_multiple_of(2);
         let source = Source {
@@ -122,6 +156,7 @@ impl<T: Sample> Raster<T> {
             alpha: if has_alpha { alpha } else { Alpha::None },
             grey: self.channels < 3,
             display_referred: T::DEPTH.is_display(),
+            space: encoding.space().cloned(),
             ..Source::plain()
         };
         let (width, height) = (self.width, self.height);
@@ -144,14 +179,18 @@ impl<T: Sample> Raster<T> {
         }
     }
 
-    fn by_curve(&self, curve: Curve, matrix: Option<&DMat3>, pixels: &mut [[f32; 4]]) {
-        let table: Vec<f32> = T::all().into_iter().map(|v| curve.light(v) as f32).collect();
-        let matrix = matrix.map(|m| Mat3A::from(m.as_mat3()));
+    fn by_curves(&self, shaper: &Shaper, pixels: &mut [[f32; 4]]) {
+        let [red, green, blue] = &shaper.curves;
+        let table = |curve: &Curve| -> Vec<f32> { T::all().into_iter().map(|v| curve.light(v) as f32).collect() };
+        let same = red == green && red == blue;
+        let tables = if same { vec![table(red)] } else { shaper.curves.iter().map(table).collect() };
+        let (r, g, b) = (&tables[0], &tables[tables.len() / 2], &tables[tables.len() - 1]);
+        let matrix = shaper.matrix.map(|m| Mat3A::from(m.as_mat3()));
         let width = self.width as usize;
         pixels.par_chunks_exact_mut(width).enumerate().for_each(|(row, pixels)| {
             for (column, pixel) in pixels.iter_mut().enumerate() {
                 let (colour, alpha) = self.rgba(row * width + column);
-                let mut rgb = colour.map(|c| c.light(&table, curve));
+                let mut rgb = [colour[0].light(r, red), colour[1].light(g, green), colour[2].light(b, blue)];
                 if let Some(matrix) = matrix {
                     rgb = (matrix * Vec3A::from(rgb)).to_array();
                 }
@@ -165,7 +204,7 @@ impl<T: Sample> Raster<T> {
         pixels.par_chunks_exact_mut(width).enumerate().try_for_each(|(row, pixels)| {
             let encoded: Vec<_> = (0..width).map(|column| self.rgba(row * width + column)).collect();
             let colours: Vec<[f32; 3]> = encoded.iter().map(|(colour, _)| colour.map(T::unit)).collect();
-            let light = profile.to_light(colours)?;
+            let light = profile.to_light(&colours)?;
             for ((pixel, [r, g, b]), (_, alpha)) in pixels.iter_mut().zip(light).zip(encoded) {
                 *pixel = [r, g, b, alpha.map_or(1.0, T::unit)];
             }

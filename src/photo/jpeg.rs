@@ -7,7 +7,7 @@ use image::{ExtendedColorType, ImageDecoder, ImageEncoder};
 
 use super::decode::{Encoding, Raster};
 use super::display::{self, Look};
-use super::icc::Profile;
+use super::icc::{self, Profile};
 use super::read::check_size;
 use super::transfer::Curve;
 use super::{Alpha, Format, Photo, ReadOptions, Reason, zeroed};
@@ -48,6 +48,7 @@ fn check_complete(file: &[u8]) -> Result<(), Reason> {
 pub(super) fn write(writer: impl Write, photo: &Photo, look: Look) -> Result<(), Reason> {
     let samples = display::encode::<u8>(photo, look, false)?;
     let colour = if samples.channels == 1 { ExtendedColorType::L8 } else { ExtendedColorType::Rgb8 };
-    let encoder = JpegEncoder::new_with_quality(writer, QUALITY);
+    let mut encoder = JpegEncoder::new_with_quality(writer, QUALITY);
+    encoder.set_icc_profile(icc::srgb_profile(samples.channels == 1)?.to_vec())?;
     Ok(encoder.write_image(&samples.data, photo.width(), photo.height(), colour)?)
 }

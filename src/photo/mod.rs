@@ -23,12 +23,14 @@
 //! Display formats and Radiance HDR write NaN, −∞ and negative values as 0, and +∞ as the largest value they hold.
 
 mod bad;
+mod cicp;
 mod decode;
 mod display;
 mod exr;
 mod format;
 mod icc;
 mod jpeg;
+mod lost;
 mod pfm;
 mod png;
 mod primaries;
@@ -46,6 +48,7 @@ use glam::DMat3;
 
 pub use bad::{BadKind, BadPixels, survey};
 pub use format::{Depth, Format};
+pub use lost::lost;
 pub use primaries::Primaries;
 pub use read::{MAX_PIXELS, Missing, ReadOptions, read, read_with};
 pub(crate) use shown::Shown;
@@ -100,10 +103,14 @@ pub struct Source {
     pub pixel_aspect: f64,
     /// What the picture is called in a file that holds several: a layer, a part, a page.
     pub picture: Option<String>,
+    /// The colour space of a file whose pixels have been converted to Rec.709's primaries when it was read.
+    pub space: Option<String>,
     /// What a person ought to know of how the file was read: what was damaged, missing, or taken for something else.
     pub notes: Vec<String>,
     /// Everything else that an OpenEXR file held.
     exr: Option<Arc<exr::Rest>>,
+    /// What the header of a Radiance file held.
+    radiance: Option<Arc<radiance::Header>>,
 }
 
 impl Source {
@@ -118,8 +125,10 @@ impl Source {
             primaries: None,
             pixel_aspect: 1.0,
             picture: None,
+            space: None,
             notes: Vec::new(),
             exr: None,
+            radiance: None,
         }
     }
 }
@@ -136,13 +145,15 @@ impl Photo {
     }
 
     /// Another picture in the same frame and of the same primaries, which comes from no file: scene-linear, without
-    /// alpha, and with nothing else of what this photo's file held.
+    /// alpha, and with nothing else of what this photo's file held but a Radiance header, on which the numbers' unit
+    /// depends.
     ///
     /// # Panics
     /// If there are not as many pixels as the window holds.
     pub fn companion(&self, pixels: Vec<[f32; 4]>) -> Self {
         assert_eq!(pixels.len(), self.frame.window.pixels(), "a photo needs as many pixels as its window");
-        let source = Source { primaries: self.source.primaries, ..Source::plain() };
+        let Source { primaries, radiance, .. } = &self.source;
+        let source = Source { primaries: *primaries, radiance: radiance.clone(), ..Source::plain() };
         Self { frame: self.frame, pixels, source }
     }
 

@@ -51,6 +51,21 @@ impl Primaries {
         ("xyz", Self::XYZ),
     ];
 
+    /// What people call these primaries, where they have a name (to three decimals, as files round them).
+    pub(super) fn title(self) -> Option<&'static str> {
+        const TITLES: [&str; 8] = [
+            "Rec. 709",
+            "Display P3",
+            "Rec. 2020",
+            "Adobe RGB (1998)",
+            "ProPhoto RGB",
+            "ACEScg",
+            "ACES2065-1",
+            "CIE XYZ",
+        ];
+        Self::NAMES.iter().position(|&(_, known)| self.near(known)).map(|k| TITLES[k])
+    }
+
     /// Those called `name`.
     pub fn named(name: &str) -> Option<Self> {
         Self::NAMES.into_iter().find(|&(known, _)| known == name).map(|(_, primaries)| primaries)
@@ -68,10 +83,12 @@ impl Primaries {
 
     /// These primaries, if they span a colour space and are not Rec.709's (to three decimals, as files round them).
     pub(super) fn other_than_rec709(self) -> Option<Self> {
-        let near = |a: DVec2, b: DVec2| (a - b).abs().max_element() < 1e-3;
-        let r = Self::REC709;
-        let same = near(self.red, r.red) && near(self.green, r.green) && near(self.blue, r.blue);
-        self.sound().filter(|_| !(same && near(self.white, r.white)))
+        self.sound().filter(|_| !self.near(Self::REC709))
+    }
+
+    fn near(self, other: Self) -> bool {
+        let points = |p: Self| [p.red, p.green, p.blue, p.white];
+        points(self).into_iter().zip(points(other)).all(|(a, b)| (a - b).abs().max_element() < 1e-3)
     }
 
     /// The share of red, green and blue in luminance; they add up to 1.
@@ -88,7 +105,7 @@ impl Primaries {
         let (from, to) = (self.to_xyz(), Self::REC709.to_xyz());
         let white = Self::REC709.white;
         match (from, to) {
-            _ if self.is_xyz() => to.map_or(DMat3::IDENTITY, |to| to.inverse()),
+            _ if self.is_xyz() => Self::xyz_to_rec709(),
             (Some(from), Some(to)) => to.inverse() * adapt(self.white, white) * from,
             _ => DMat3::IDENTITY,
         }
@@ -98,6 +115,16 @@ impl Primaries {
     fn is_xyz(self) -> bool {
         let near = |a: DVec2, b: DVec2| (a - b).abs().max_element() < 1e-3;
         near(self.red, Self::XYZ.red) && near(self.green, Self::XYZ.green) && near(self.blue, Self::XYZ.blue)
+    }
+
+    /// The matrix from CIE XYZ as it stands, not adapted to another white, to Rec.709: (0.9505, 1, 1.089) is white.
+    pub(super) fn xyz_to_rec709() -> DMat3 {
+        Self::REC709.to_xyz().unwrap_or(DMat3::IDENTITY).inverse()
+    }
+
+    /// The matrix from the XYZ of an ICC profile, whose white is D50, to Rec.709.
+    pub(super) fn pcs_to_rec709() -> DMat3 {
+        Self::xyz_to_rec709() * adapt(D50, D65)
     }
 
     /// RGB to XYZ with Y = 1 at white: each primary's XYZ, scaled so that they add up to white.

@@ -66,7 +66,7 @@ pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Photo> {
 fn decode(reader: Box<dyn Input>, format: Format, options: &ReadOptions) -> std::result::Result<Photo, Reason> {
     match format {
         Format::OpenExr => exr::read(reader, options),
-        Format::Radiance => radiance::read(reader),
+        Format::Radiance => radiance::read(reader, options),
         Format::Pfm => pfm::read(reader),
         Format::Tiff => tiff::read(reader, options),
         Format::Png => png::read(reader, options),

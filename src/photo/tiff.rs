@@ -13,7 +13,7 @@ use tiff::tags::{ExtraSamples, Tag};
 
 use super::decode::{Encoding, Raster, Sample};
 use super::display::{self, Code, Look};
-use super::icc::Profile;
+use super::icc::{self, Profile};
 use super::pfm::rec709;
 use super::read::{MAX_PIXELS, check_size};
 use super::transfer::Curve;
@@ -111,9 +111,9 @@ fn write_kind<W: Write + Seek, K: TiffKind>(
     use colortype::{Gray8, Gray16, Gray32Float, RGB8, RGB16, RGB32Float};
     let alpha = photo.source.alpha != Alpha::None;
     match depth {
-        Depth::Eight => encode::<_, _, Gray8, RGB8, u8>(encoder, photo, &codes(photo, look, alpha)?),
-        Depth::Sixteen => encode::<_, _, Gray16, RGB16, u16>(encoder, photo, &codes(photo, look, alpha)?),
-        _ => encode::<_, _, Gray32Float, RGB32Float, f32>(encoder, photo, &floats(photo, alpha)?),
+        Depth::Eight => encode::<_, _, Gray8, RGB8, u8>(encoder, photo, true, &codes(photo, look, alpha)?),
+        Depth::Sixteen => encode::<_, _, Gray16, RGB16, u16>(encoder, photo, true, &codes(photo, look, alpha)?),
+        _ => encode::<_, _, Gray32Float, RGB32Float, f32>(encoder, photo, false, &floats(photo, alpha)?),
     }
 }
 
@@ -137,10 +137,11 @@ fn floats(photo: &Photo, alpha: bool) -> Result<(usize, Vec<f32>), Reason> {
     Ok((channels, samples))
 }
 
-/// Writes samples of type `T`, as the colour `Grey` or `Rgb`, with what is beyond as alpha.
+/// Writes samples of type `T`, as the colour `Grey` or `Rgb`, with what is beyond as alpha; for displays, with a profile.
 fn encode<W, K, Grey, Rgb, T>(
     mut encoder: TiffEncoder<W, K>,
     photo: &Photo,
+    display: bool,
     (channels, samples): &(usize, Vec<T>),
 ) -> Result<(), Reason>
 where
@@ -154,11 +155,15 @@ where
         Alpha::Premultiplied => ExtraSamples::AssociatedAlpha,
         _ => ExtraSamples::UnassociatedAlpha,
     };
+    let profile = display.then(|| icc::srgb_profile(*channels < 3)).transpose()?;
     let extra = if channels.is_multiple_of(2) { &[alpha][..] } else { &[] };
     macro_rules! write_as {
         ($colour:ty) => {{
             let mut image = encoder.new_image::<$colour>(photo.width(), photo.height())?;
             image.extra_samples(extra)?;
+            if let Some(profile) = profile {
+                image.encoder().write_tag(Tag::IccProfile, profile)?;
+            }
             image.write_data(samples)?;
         }};
     }

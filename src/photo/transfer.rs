@@ -1,10 +1,13 @@
 //! Transfer functions: from the numbers in a file to light, and for sRGB back.
 //!
 //! [SRGB] IEC 61966-2-1:1999; [709] ITU-R BT.709-6, item 1.2; [2100] ITU-R BT.2100-2, tables 4 and 5;
-//! [2408] ITU-R BT.2408-7, section 2.1: reference white is 203 cd/m², and 75 % of the HLG signal.
+//! [2408] ITU-R BT.2408-7, section 2.1: reference white is 203 cd/m², and 75 % of the HLG signal;
+//! [ICC] ICC.1:2022, sections 10.6 and 10.18.
+
+use std::sync::Arc;
 
 /// How encoded values become linear light; display white is 1.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) enum Curve {
     /// They are linear already.
     Linear,
@@ -18,26 +21,57 @@ pub(super) enum Curve {
     Pq,
     /// [2100] HLG, scene light in units of the light of a 75 % signal.
     Hlg,
+    /// [ICC] 10.18, function type 4, of which the others are cases: parameters g, a, b, c, d, e, f.
+    Parametric([f64; 7]),
+    /// [ICC] 10.6: light at equal steps of 0..1, two at least, straight in between and beyond.
+    Table(Arc<[f64]>),
 }
 
 impl Curve {
     /// Light of the encoded value `v`, usually in 0..1; negative values mirror.
-    pub fn light(self, v: f64) -> f64 {
+    pub fn light(&self, v: f64) -> f64 {
         self.light_of_positive(v.abs()).copysign(v)
     }
 
-    fn light_of_positive(self, v: f64) -> f64 {
+    fn light_of_positive(&self, v: f64) -> f64 {
         match self {
             Self::Linear => v,
             Self::Srgb if v <= 0.04045 => v / 12.92,
             Self::Srgb => ((v + 0.055) / 1.055).powf(2.4),
-            Self::Power(exponent) => v.powf(exponent),
+            Self::Power(exponent) => v.powf(*exponent),
             Self::Rec709 if v < 0.081 => v / 4.5,
             Self::Rec709 => ((v + 0.099) / 1.099).powf(1.0 / 0.45),
             Self::Pq => pq(v) * 10_000.0 / 203.0,
             Self::Hlg => hlg(v) / hlg(0.75),
+            // A base below 0 has no power; the curve is 0 where it begins.
+            &Self::Parametric([g, a, b, c, d, e, f]) => {
+                if v >= d {
+                    (a * v + b).max(0.0).powf(g) + e
+                } else {
+                    c * v + f
+                }
+            }
+            Self::Table(steps) => interpolated(steps, v),
         }
     }
+
+    /// The curve that this one is, as nearly as profiles can say it, where it is straight or sRGB's.
+    pub fn recognised(self) -> Self {
+        // Profiles round curves to 16 bits, and sRGB's to a few hundred points.
+        let same = |known: &Self| {
+            (0..=1000).all(|k| (self.light(f64::from(k) * 1e-3) - known.light(f64::from(k) * 1e-3)).abs() < 1e-4)
+        };
+        [Self::Linear, Self::Srgb].into_iter().find(same).unwrap_or(self)
+    }
+}
+
+/// A line through the samples of 0..1, which goes on straight beyond 1.
+fn interpolated(steps: &[f64], v: f64) -> f64 {
+    let place = v * (steps.len() - 1) as f64;
+    let first = (place as usize).min(steps.len() - 2);
+    let slope = steps[first + 1] - steps[first];
+    // Nothing times infinity is undefined.
+    if slope == 0.0 && !v.is_nan() { steps[first] } else { steps[first] + slope * (place - first as f64) }
 }
 
 /// [2100] table 4: cd/m² / 10000 of a PQ signal.
@@ -69,6 +103,28 @@ mod tests {
             let light = Curve::Srgb.light(f64::from(code) / 65535.0) as f32;
             assert_eq!((srgb_encode(light) * 65535.0).round() as u32, code);
         }
+    }
+
+    #[test]
+    fn curves_of_profiles_are_evaluated_as_they_are_defined() {
+        // [ICC] 10.18: sRGB as a function of type 3.
+        let srgb = Curve::Parametric([2.4, 1.0 / 1.055, 0.055 / 1.055, 1.0 / 12.92, 0.04045, 0.0, 0.0]);
+        for k in 0..=100 {
+            let v = f64::from(k) / 100.0;
+            assert!((srgb.light(v) - Curve::Srgb.light(v)).abs() < 1e-12, "{v}");
+        }
+        assert_eq!(srgb.recognised(), Curve::Srgb);
+        assert_eq!(Curve::Power(2.2).recognised(), Curve::Power(2.2));
+        // A base that is negative at first: type 1 with an offset.
+        let late = Curve::Parametric([1.8, 2.0, -0.5, 0.0, 0.25, 0.0, 0.0]);
+        assert_eq!((late.light(0.0), late.light(0.2)), (0.0, 0.0));
+        assert!((late.light(0.75) - 1.0).abs() < 1e-12);
+        let table = Curve::Table([0.0, 0.25, 1.0].into());
+        let points = [(0.0, 0.0), (0.25, 0.125), (0.5, 0.25), (0.75, 0.625), (1.0, 1.0), (2.0, 2.5)];
+        points.into_iter().for_each(|(v, light)| assert_eq!(table.light(v), light, "{v}"));
+        assert!(table.light(f64::NAN).is_nan());
+        assert_eq!(Curve::Table([0.0, 1.0, 1.0].into()).light(f64::INFINITY), 1.0);
+        assert_eq!(Curve::Table([0.0, 0.5, 1.0].into()).recognised(), Curve::Linear);
     }
 
     #[test]

@@ -152,6 +152,15 @@ fn plan(path: &Path, photo: &Photo, options: &WriteOptions) -> Result<Plan> {
     Ok(Plan { format, depth, look, target: target(path, options.overwrite)? })
 }
 
+/// The format and the depth that a photo is written in.
+///
+/// # Errors
+/// Where the name or the options ask for what there is not.
+pub(super) fn kind(path: &Path, photo: &Photo, options: &WriteOptions) -> Result<(Format, Depth), Reason> {
+    let format = Format::from_extension(path)?;
+    Ok((format, depth(format, photo, options.depth)?))
+}
+
 fn check_picture(photo: &Photo, format: Format) -> Result<(), Reason> {
     let (width, height) = (photo.width(), photo.height());
     if photo.pixels.len() != photo.frame.window.pixels() {

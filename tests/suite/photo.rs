@@ -1,5 +1,6 @@
 //! What is read is what the file says, and what is written reads back as it was.
 
+mod colour;
 mod damaged;
 mod display;
 mod exr;

@@ -1,0 +1,41 @@
+//! What of a photo's meaning a file of another kind cannot hold.
+
+use std::path::Path;
+
+use super::{Format, Photo, WriteOptions, write};
+
+/// What a person ought to know of how `photo` becomes `path` with these options, a sentence each: nothing where it
+/// keeps its colours' meaning, or where [`write()`](super::write()) would refuse.
+pub fn lost(path: &Path, photo: &Photo, options: &WriteOptions) -> Vec<String> {
+    let Ok((format, depth)) = write::kind(path, photo, options) else { return Vec::new() };
+    colours(photo, format, depth.is_display()).into_iter().chain(exposure(photo, format)).collect()
+}
+
+fn colours(photo: &Photo, format: Format, display: bool) -> Option<String> {
+    let source = &photo.source;
+    let name = |primaries: super::Primaries| primaries.title().unwrap_or("primaries of their own").to_owned();
+    let own = source.primaries.map(name);
+    if display {
+        let from = own.or(source.space.clone())?;
+        return Some(format!("the photo's colours, {from}, are written as sRGB, and those outside it are clipped"));
+    }
+    match format {
+        // They keep primaries, or know no others, but those that are negative in Rec. 709.
+        Format::OpenExr => None,
+        Format::Radiance if source.radiance.is_some() && source.space.is_none() => None,
+        Format::Radiance => {
+            let from = own.or(source.space.clone())?;
+            Some(format!("the photo's colours, {from}, are written as Rec. 709, and those outside it are clipped"))
+        }
+        _ => own.map(|from| format!("the photo's colours, {from}, are written as Rec. 709")),
+    }
+}
+
+fn exposure(photo: &Photo, format: Format) -> Option<String> {
+    let exposure = photo.source.radiance.as_ref()?.exposure();
+    (format != Format::Radiance && exposure != [1.0; 3]).then(|| {
+        let [r, g, b] = exposure;
+        let value = if r == g && r == b { format!("{r}") } else { format!("{r} {g} {b}") };
+        format!("the photo's EXPOSURE of {value} is lost: its pixels are written as they stand, multiplied by it")
+    })
+}
