@@ -147,7 +147,7 @@ fn alone(walk: &Walk, number: usize) -> Vec<u8> {
     let [h1, h0] = size(walk.frame.height, v, most_v);
     let count = parts.len() as u8;
     let mut file = vec![0xff, 0xd8];
-    let tables = |marker| matches!(marker, walk::DQT | walk::DHT | walk::DAC | walk::DRI);
+    let tables = |marker| matches!(marker, walk::DQT | walk::DHT | walk::DRI);
     for segment in walk.segments.iter().filter(|s| tables(s.marker) && s.scans_before <= number) {
         file.extend(segment.whole);
     }

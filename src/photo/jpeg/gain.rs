@@ -11,6 +11,7 @@ use image::{DynamicImage, ImageBuffer};
 use rayon::prelude::*;
 
 use super::super::{Photo, Reason};
+use super::check;
 use super::decode::{self, Decoded, Samples};
 use super::recipe::Recipe;
 use super::tags;
@@ -82,6 +83,7 @@ struct Map {
 impl Map {
     fn new(walk: &Walk, orientation: Orientation) -> Result<Self, Reason> {
         walk.check()?;
+        check::check(walk, &mut Vec::new())?;
         let Decoded { channels, samples: Samples::Eight(codes) } = decode::decode(walk, &mut Vec::new())? else {
             return Err("it has more than 8 bits".into());
         };

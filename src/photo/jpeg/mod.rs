@@ -18,6 +18,8 @@
 //! An ICC profile wins, then Exif: sRGB, or Adobe RGB (1998) as DCF 2.0 marks it (`tags`). CMYK is converted without
 //! its profile. A gain map (Ultra HDR, ISO 21496-1) is applied in full: the photo is then scene-linear (`gain`).
 
+mod check;
+mod codes;
 mod decode;
 mod gain;
 mod planes;
@@ -47,6 +49,7 @@ pub(super) fn read(mut reader: impl BufRead + Seek, options: &ReadOptions) -> Re
     let walk = Walk::new(&file)?;
     walk.check()?;
     let mut notes = Vec::new();
+    check::check(&walk, &mut notes)?;
     let decoded = decode::decode(&walk, &mut notes)?;
     let shown = tags::Shown::of(&walk, &mut notes);
     let encoding = tags::encoding(&walk, &shown, options, &mut notes);

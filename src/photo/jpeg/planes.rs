@@ -20,8 +20,9 @@ pub(super) fn interleave(frame: &Frame, planes: &[Plane], out: &mut [u8]) {
     for (index, (plane, &component)) in planes.iter().zip(&frame.components).enumerate() {
         let (most_h, most_v) = frame.most();
         let (columns, rows) = frame.size_of(component);
-        let across = Steps { of: component.h, to: most_h, count: columns };
-        let down = Steps { of: component.v, to: most_v, count: rows };
+        let smooth = most_h <= 2 * component.h && most_v <= 2 * component.v;
+        let across = Steps { of: component.h, to: most_h, count: columns, smooth };
+        let down = Steps { of: component.v, to: most_v, count: rows, smooth };
         for (y, line) in out.chunks_exact_mut(frame.width as usize * count).enumerate() {
             let near = &plane.samples[down.near(y) * plane.stride..][..columns];
             let far = &plane.samples[down.far(y) * plane.stride..][..columns];
@@ -36,12 +37,14 @@ pub(super) fn interleave(frame: &Frame, planes: &[Plane], out: &mut [u8]) {
 
 /// The samples of a component along one direction, beside the picture's.
 ///
-/// Twice as many are interpolated: three parts of the nearer sample and one of the farther, which are the distances of
-/// their centres. Other numbers are rare, and repeated.
+/// Half as many are interpolated: three parts of the nearer sample and one of the farther, which are the distances of
+/// their centres. Other numbers are rare, and repeated, as libjpeg does.
 struct Steps {
     of: usize,
     to: usize,
     count: usize,
+    /// Whether to interpolate.
+    smooth: bool,
 }
 
 impl Steps {
@@ -51,7 +54,7 @@ impl Steps {
 
     fn far(&self, at: usize) -> usize {
         let near = self.near(at);
-        match (self.to == 2 * self.of, at % 2) {
+        match (self.smooth && self.to == 2 * self.of, at % 2) {
             (true, 0) => near.saturating_sub(1),
             (true, _) => (near + 1).min(self.count - 1),
             (false, _) => near,

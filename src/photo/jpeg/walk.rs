@@ -9,7 +9,7 @@ const DNL: u8 = 0xdc;
 const DHP: u8 = 0xde;
 pub(super) const DQT: u8 = 0xdb;
 pub(super) const DHT: u8 = 0xc4;
-pub(super) const DAC: u8 = 0xcc;
+const DAC: u8 = 0xcc;
 pub(super) const DRI: u8 = 0xdd;
 
 /// Files of up to so many scans are decoded whatever their size; encoders write about ten.
@@ -58,7 +58,6 @@ pub(super) struct Frame {
     /// The second byte of its marker.
     pub marker: u8,
     pub process: Process,
-    pub arithmetic: bool,
     /// Bits of a sample, 2..=16.
     pub precision: u8,
     pub width: u32,
@@ -74,6 +73,10 @@ pub(super) struct Scan<'a> {
     pub band: (u8, u8),
     /// The lowest bit of the coefficients that it brings them to.
     pub low_bit: u8,
+    /// The coefficients' next bit if some were there before, 0 in a first scan.
+    pub high_bit: u8,
+    /// The numbers of the DC and the AC table of each component.
+    pub tables: Vec<(u8, u8)>,
     /// From the header's marker to the end of the coded data.
     pub whole: &'a [u8],
     /// The coded data alone, restart markers included.
@@ -224,11 +227,14 @@ impl Frame {
         if ![1, 3, 4].contains(count) {
             return Err(format!("it has {count} colour components; vglare reads JPEG of 1, 3 or 4").into());
         }
+        if marker & 0x8 != 0 {
+            return Err("it is a JPEG of arithmetic coding, in which nothing tells whether data are missing; vglare reads Huffman coding".into());
+        }
         let (width, height) = (u16::from_be_bytes([*w1, *w0]).into(), u16::from_be_bytes([*h1, *h0]).into());
         if height == 0 && width > 0 {
             return Err("its header gives no height (DNL), which vglare does not read".into());
         }
-        Ok(Self { marker, process, arithmetic: marker & 0x8 != 0, precision: *precision, width, height, components })
+        Ok(Self { marker, process, precision: *precision, width, height, components })
     }
 
     /// The largest sampling factors, across and down.
@@ -244,7 +250,7 @@ impl Frame {
     }
 
     /// The least coded data that can fill the frame: a Huffman code has a bit at least, and a block two codes, or one
-    /// in a progressive picture's first scan. Arithmetic codes may be far shorter; 32 blocks to a byte is beyond them.
+    /// in a progressive picture's first scan.
     fn least_bytes(&self) -> usize {
         let blocks = |&c: &Component| {
             let (width, height) = self.size_of(c);
@@ -252,7 +258,6 @@ impl Frame {
         };
         let blocks: usize = self.components.iter().map(blocks).sum();
         match self.process {
-            _ if self.arithmetic => blocks / 32,
             Process::Sequential => blocks / 4,
             Process::Progressive => blocks / 8,
             Process::Lossless => (self.width as usize * self.height as usize).min(MAX_PIXELS) / 8,
@@ -287,5 +292,7 @@ fn scan<'a>(payload: &[u8], frame: &Frame) -> Result<Scan<'a>, Reason> {
     if components.is_empty() || components.len() > 4 {
         return Err(damaged());
     }
-    Ok(Scan { components, band: (start, end), low_bit: bits & 15, whole: &[], coded: &[] })
+    let tables = payload[1..1 + 2 * count].chunks_exact(2).map(|c| (c[1] >> 4, c[1] & 15)).collect();
+    let (high_bit, low_bit) = (bits >> 4, bits & 15);
+    Ok(Scan { components, band: (start, end), high_bit, low_bit, tables, whole: &[], coded: &[] })
 }
