@@ -1,0 +1,87 @@
+//! JPEG, read by `libjpeg-turbo-rs` and written by the `image` crate: 8 bit, at quality 95 without chroma subsampling.
+//!
+//! # Reading
+//!
+//! Before anything is decoded the file's markers are walked (`walk`): what stands behind the picture's end marker (a
+//! film, a preview, a maker's data) is no part of it, and a picture that lacks an end, a scan, or the least data that
+//! its size needs is refused as cut short. The decoder then refuses codes that do not exist and data that end early;
+//! it never fills up with grey.
+//!
+//! Of the decoders that were compared with libjpeg-turbo's `djpeg` over 482 files (22 ways of sampling, scans together
+//! and apart, restart markers, progressive; November 2026), zune-jpeg differed by more than 8 codes in 202 files and
+//! jpeg-decoder in none but fills missing data with grey; libjpeg-turbo-rs refused 112 and was equal in all others. The
+//! 112 (luma sampled less than chroma, scans of two of three components) are decoded by it to planes, which `planes`
+//! puts together. It is built without its SIMD code, which is not free of `unsafe`.
+//!
+//! # Colours
+//!
+//! An ICC profile wins, then Exif: sRGB, or Adobe RGB (1998) as DCF 2.0 marks it (`tags`). CMYK is converted without
+//! its profile. A gain map (Ultra HDR, ISO 21496-1) is applied in full: the photo is then scene-linear (`gain`).
+
+mod check;
+mod codes;
+mod decode;
+mod gain;
+mod planes;
+mod recipe;
+mod tags;
+mod walk;
+
+use std::io::{BufRead, Seek, Write};
+
+use image::codecs::jpeg::JpegEncoder;
+use image::metadata::Orientation;
+use image::{ExtendedColorType, ImageEncoder};
+
+use super::decode::{Encoding, Raster};
+use super::display::{self, Look};
+use super::icc;
+use super::{Alpha, Format, Photo, ReadOptions, Reason};
+use decode::{Decoded, Samples};
+use walk::Walk;
+
+const QUALITY: u8 = 95;
+/// The format counts columns and rows in 16 bits.
+pub(super) const LONGEST_SIDE: u32 = 65535;
+
+pub(super) fn read(mut reader: impl BufRead + Seek, options: &ReadOptions) -> Result<Photo, Reason> {
+    let mut file = Vec::new();
+    reader.read_to_end(&mut file)?;
+    let walk = Walk::new(&file)?;
+    walk.check()?;
+    let mut notes = Vec::new();
+    check::check(&walk, &mut notes)?;
+    let decoded = decode::decode(&walk, &mut notes)?;
+    let shown = tags::Shown::of(&walk, &mut notes);
+    let encoding = tags::encoding(&walk, &shown, options, &mut notes);
+    let mut photo = into_photo(decoded, &walk, &encoding, shown.orientation)?;
+    photo.source.notes.append(&mut notes);
+    gain::apply(&walk, shown.orientation, &mut photo);
+    Ok(photo)
+}
+
+fn into_photo(decoded: Decoded, walk: &Walk, encoding: &Encoding, turn: Orientation) -> Result<Photo, Reason> {
+    let (width, height, channels) = (walk.frame.width, walk.frame.height, decoded.channels);
+    match decoded.samples {
+        Samples::Eight(samples) => Raster { width, height, channels, samples, planar: false }.into_photo(
+            Format::Jpeg,
+            Alpha::None,
+            encoding,
+            turn,
+        ),
+        Samples::Sixteen(samples) => Raster { width, height, channels, samples, planar: false }.into_photo(
+            Format::Jpeg,
+            Alpha::None,
+            encoding,
+            turn,
+        ),
+    }
+}
+
+pub(super) fn write(writer: impl Write, photo: &Photo, look: Look) -> Result<(), Reason> {
+    let samples = display::encode::<u8>(photo, look, false)?;
+    let colour = if samples.channels == 1 { ExtendedColorType::L8 } else { ExtendedColorType::Rgb8 };
+    let mut encoder = JpegEncoder::new_with_quality(writer, QUALITY);
+    encoder.set_icc_profile(icc::srgb_profile(samples.channels == 1)?.to_vec())?;
+    Ok(encoder.write_image(&samples.data, photo.width(), photo.height(), colour)?)
+}
