@@ -4,7 +4,7 @@ use crate::choices::{Mix, Normalize};
 use crate::look::{Gathered, Look};
 use crate::photo::Photo;
 use crate::renderer::Settings;
-use crate::scene::Ghost;
+use crate::scene::{Emission, Ghost};
 use crate::{Error, Result};
 
 /// What the composite is told, and what to warn of. Where light is taken from the photo's lights, `bright` gives
@@ -21,7 +21,7 @@ pub fn settings(
     let mut settings = Settings {
         strength: look.strength,
         normalize: look.normalize,
-        luminance: photo.luminance_weights(),
+        emission: Emission::of(photo),
         ..Settings::default()
     };
     if look.mix == Mix::Add {
@@ -41,18 +41,18 @@ pub fn settings(
 }
 
 /// The flux of all pixels of a photo at or above a luminance, RGB, in the photo's unit times half picture heights
-/// squared.
+/// squared: what they give, also of negative channels. Fireflies count here as what they are.
 pub fn bright_light(photo: &Photo, threshold: f64) -> [f64; 3] {
-    let weights = photo.luminance_weights();
-    let area = photo.frame.pixel_size().powi(2);
+    let emission = Emission::of(photo);
+    let (area, threshold) = (photo.frame.pixel_size().powi(2), threshold as f32);
     let mut bright = [0.0; 3];
     for pixel in &photo.pixels {
-        let light = [pixel[0], pixel[1], pixel[2]].map(f64::from);
-        let luminance: f64 = light.iter().zip(weights).map(|(light, weight)| light * weight).sum();
-        // As the composite's shader decides; NaN is never at or above anything.
-        if luminance >= threshold && light.iter().all(|light| light.is_finite()) {
-            for (bright, light) in bright.iter_mut().zip(light) {
-                *bright += light * area;
+        // As the composite's shader decides.
+        let luminance = emission.luminance(pixel);
+        if luminance >= threshold && luminance > 0.0 {
+            let share = f64::from(emission.share(pixel)) * area;
+            for (bright, &light) in bright.iter_mut().zip(pixel) {
+                *bright += f64::from(light) * share;
             }
         }
     }

@@ -139,7 +139,7 @@ fn the_glare_is_linear_in_the_strength() {
 #[test]
 fn light_is_taken_only_where_the_photo_is_bright_enough() {
     let gain = [0.5, 0.25, 0.75];
-    let settings = Settings { light_gain: gain, threshold: 2.0, luminance: [0.25, 0.5, 0.25], ..Settings::default() };
+    let settings = Settings { light_gain: gain, threshold: 2.0, emission: [0.25, 0.5, 0.25].into(), ..Settings::default() };
     // At the threshold, just below it, above it, far below, and infinite: what has no finite light keeps it.
     let below = f32::from_bits(2f32.to_bits() - 1);
     let colours =
