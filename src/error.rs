@@ -39,8 +39,8 @@ pub enum Error {
 
     /// f32 cannot be as exact as asked in this scene.
     #[error(
-        "a tolerance of {asked:.1e} is below what 32-bit floats can give here: {floor:.1e}; ask for --tolerance {}, or for \
-         whatever can be had by --allow-floor",
+        "{}; ask for --tolerance {}, or for whatever can be had by --allow-floor",
+        below_floor(*asked, *floor),
         above(*floor)
     )]
     ToleranceBelowFloor { asked: f64, floor: f64 },
@@ -103,6 +103,14 @@ pub enum Error {
 }
 
 impl Error {
+    /// Why something cannot be had, without what to ask for instead: for where another way is taken anyway.
+    pub(crate) fn reason(&self) -> String {
+        match self {
+            Self::ToleranceBelowFloor { asked, floor } => below_floor(*asked, *floor),
+            error => error.to_string(),
+        }
+    }
+
     /// What the program exits with: 1 in general, 2 where the command line asks for the impossible, 3 where the
     /// tolerance or the budget cannot be or was not met, 4 where there is no OpenGL or no display. (clap's own usage errors exit with 2 as well.)
     pub fn exit_code(&self) -> u8 {
@@ -154,6 +162,10 @@ fn meant(name: &str, known: &[String]) -> String {
     best.filter(|best| alike(best) > 0.8).map_or_else(String::new, |best| format!("; did you mean {best}?"))
 }
 
+fn below_floor(asked: f64, floor: f64) -> String {
+    format!("a tolerance of {asked:.1e} is below what 32-bit floats can give here: {floor:.1e}")
+}
+
 /// Two digits that are no less than `floor`, for an option.
 fn above(floor: f64) -> String {
     let unit = 10_f64.powf(floor.log10().floor() - 1.0);
@@ -169,7 +181,11 @@ mod tests {
         let known = ["classic-prime", "anamorphic", "zoom", "vintage-uncoated", "eye"].map(String::from).to_vec();
         let said = |name: &str| Error::UnknownPreset { name: name.into(), known: known.clone() }.to_string();
         for (name, meant) in [("vintage", "vintage-uncoated"), ("clasic-prime", "classic-prime"), ("Zoom", "zoom")] {
-            assert!(said(name).contains(&format!("did you mean {meant}?; there are classic-prime, ")), "{}", said(name));
+            assert!(
+                said(name).contains(&format!("did you mean {meant}?; there are classic-prime, ")),
+                "{}",
+                said(name)
+            );
         }
         for name in ["fisheye-8mm", "x", ""] {
             assert!(!said(name).contains("did you mean"), "{}", said(name));

@@ -10,7 +10,9 @@ pub fn none(found: &Found) -> String {
     match found.rule {
         _ if found.peak == 0.0 => format!("the photo is black; {instead}"),
         Rule::Given => {
-            format!("the threshold is {threshold} and the photo's brightest luminance {peak}; a lower --threshold finds more")
+            format!(
+                "the threshold is {threshold} and the photo's brightest luminance {peak}; a lower --threshold finds more"
+            )
         }
         _ => format!(
             "nothing stands out: the photo's brightest luminance, {peak}, is below the threshold, {threshold}, {}; \
@@ -75,7 +77,10 @@ mod tests {
         let said_of = |threshold| said(0.5, FindOptions { threshold, ..FindOptions::default() });
         assert!(said(0.0, FindOptions::default()).starts_with("the photo is black;"));
         let flat = said_of(None);
-        assert!(flat.contains("0.5000") && flat.contains("4 times the mean") && flat.contains("--threshold L"), "{flat}");
+        assert!(
+            flat.contains("0.5000") && flat.contains("4 times the mean") && flat.contains("--threshold L"),
+            "{flat}"
+        );
         let given = said_of(Some(3.0));
         assert!(given.contains("3.000") && given.contains("0.5000") && given.contains("lower --threshold"), "{given}");
     }

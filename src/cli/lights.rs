@@ -225,9 +225,16 @@ mod tests {
     fn options_are_those_given_or_the_librarys() {
         let options = |args: &[&str]| parsed(args).unwrap().find.over(FindOptions::default());
         assert_eq!(options(&["a.exr"]), FindOptions::default());
-        let given = options(&["a.exr", "--threshold", "2.5", "--merge", "0", "--max-lights", "7", "--firefly-limit", "1"]);
+        let given =
+            options(&["a.exr", "--threshold", "2.5", "--merge", "0", "--max-lights", "7", "--firefly-limit", "1"]);
         assert_eq!(given, FindOptions { threshold: Some(2.5), merge: 0.0, max_lights: 7, firefly_limit: 1.0 });
-        for bad in [["--threshold", "nan"], ["--threshold=-1", "--json"], ["--merge", "inf"], ["--max-lights", "-1"], ["--firefly-limit", "0.5"]] {
+        for bad in [
+            ["--threshold", "nan"],
+            ["--threshold=-1", "--json"],
+            ["--merge", "inf"],
+            ["--max-lights", "-1"],
+            ["--firefly-limit", "0.5"],
+        ] {
             assert!(parsed(&["a.exr", bad[0], bad[1]]).is_err(), "{bad:?}");
         }
     }

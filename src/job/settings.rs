@@ -77,6 +77,7 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
+    use crate::photo::{Alpha, Primaries};
     use crate::series::Bell;
 
     #[test]
@@ -98,5 +99,19 @@ mod tests {
         let (gain, enough) = light_gain(bright_light(&photo, f64::INFINITY), &[ghost(1.0)], 1.0);
         assert_eq!((gain, enough), ([0.0, 1.0, 1.0], false));
         assert_eq!(light_gain(bright_light(&photo, 10.0), &[], 1.0), ([1.0; 3], true));
+    }
+
+    #[test]
+    fn straight_alpha_takes_its_share_of_bright_light_and_darker_than_black_has_none() {
+        let mut photo = Photo::new(5, 1, [0.0, 0.25, 0.5, 1.0, f32::NAN].map(|alpha| [8.0, 4.0, -2.0, alpha]).to_vec());
+        // A pixel's area is 2 × 2.
+        let whole = [8.0, 4.0, -2.0].map(|light: f64| 4.0 * light);
+        assert_eq!(bright_light(&photo, 1.0), whole.map(|light| 5.0 * light));
+        photo.source.alpha = Alpha::Straight;
+        assert_eq!(bright_light(&photo, 1.0), whole.map(|light| 1.75 * light));
+        assert_eq!(bright_light(&photo, 2.0), whole.map(|light| 1.5 * light));
+        photo.source.primaries = Some(Primaries::ACES2065_1);
+        photo.pixels.fill([0.0, 0.0, 9.0, 1.0]);
+        assert_eq!(bright_light(&photo, 0.0), [0.0; 3]);
     }
 }

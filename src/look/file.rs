@@ -161,7 +161,11 @@ mod tests {
     #[test]
     fn a_file_adds_its_lights_to_the_photos() {
         let light = Light { position: DVec2::ONE, flux: [1.0; 3], size: 0.0, muted: false };
-        let file = |lights| SceneFile { find: FindSection { add: true, ..FindSection::default() }, lights, ..SceneFile::default() };
+        let file = |lights| SceneFile {
+            find: FindSection { add: true, ..FindSection::default() },
+            lights,
+            ..SceneFile::default()
+        };
         let look = Look::from_scene(file(Some(vec![light]))).unwrap();
         assert_eq!(look.lights, LookLights::FoundAnd(vec![light]));
         let found = Light { flux: [2.0; 3], ..light };

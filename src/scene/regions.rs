@@ -294,8 +294,7 @@ mod tests {
         for (width, height, threshold) in [(61, 47, 0.6), (60_000, 5, 0.62), (1, 300, 0.5), (300, 1, 0.5)] {
             let pixels: Vec<_> = (0..width * height).map(|_| [random(), random(), random(), 1.0]).collect();
             let key = |m: &Moments| (m.mean.y.to_bits(), m.mean.x.to_bits(), m.weight.to_bits());
-            let (mut fast, mut slow) =
-                (regions(&pixels, width, threshold), flooded(&pixels, width, threshold));
+            let (mut fast, mut slow) = (regions(&pixels, width, threshold), flooded(&pixels, width, threshold));
             assert_eq!(fast.len(), slow.len());
             fast.sort_by(|a, b| a.weight.total_cmp(&b.weight));
             slow.sort_by(|a, b| a.weight.total_cmp(&b.weight));

@@ -174,7 +174,8 @@ fn the_sun_in_one_pixel_of_a_small_panorama_is_a_light() {
 
 #[test]
 fn straight_alpha_takes_its_share_and_premultiplied_does_not() {
-    let (mut pixels, frame) = picture(20, 10, &[(4, 4, [8.0; 3]), (5, 4, [8.0; 3]), (14, 4, [8.0; 3]), (15, 4, [8.0; 3])]);
+    let (mut pixels, frame) =
+        picture(20, 10, &[(4, 4, [8.0; 3]), (5, 4, [8.0; 3]), (14, 4, [8.0; 3]), (15, 4, [8.0; 3])]);
     let lamp = |alpha: f32, at: usize, pixels: &mut Vec<[f32; 4]>| {
         (pixels[at][3], pixels[at + 1][3]) = (alpha, alpha);
     };
