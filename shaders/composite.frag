@@ -1,5 +1,6 @@
 // The photo with its glare. Alpha is left as it is.
 #include EVALUATOR
+#include "shared/emission.glsl"
 #include "shared/normalized.glsl"
 
 layout(binding = UNIT_PHOTO) uniform sampler2D photo;
@@ -23,7 +24,8 @@ void main() {
 #else
     vec4 light = texelFetch(photo, pixel, 0);
 #ifdef TAKE_LIGHT
-    bool is_light = dot(luminance.rgb, light.rgb) >= luminance.w && !any(isinf(light.rgb));
+    float given = emitted(light, luminance.rgb);
+    bool is_light = given >= luminance.w && given > 0.0;
     light.rgb *= is_light ? light_gain.rgb : vec3(1.0);
 #endif
     picture = vec4(light.rgb + added, light.a);

@@ -1,6 +1,8 @@
 // Which pixels of the photo are light, marked over what is there: the rest is left as it is. A pixel of the screen on
 // which several of the photo fall is marked if one of them is light, so that a lone lamp is seen. A photo's rows count
 // from the top and the screen's from the bottom.
+#include "shared/emission.glsl"
+
 layout(binding = UNIT_PHOTO) uniform sampler2D photo;
 layout(std140, binding = BINDING_PASS) uniform Pass {
     vec3 weights;    // of linear R, G and B in luminance
@@ -10,16 +12,24 @@ layout(std140, binding = BINDING_PASS) uniform Pass {
     float rows;      // of the screen
     vec3 mark;       // the colour of a mark, as shown
     int most;        // rows and columns that are looked at
+    float limit;     // how many times as bright as its neighbours a pixel may be; 0 for whatever it likes
 };
 layout(location = 0) out vec4 shown;
 
-// As the search for lights has it: not finite is no light, and below 0 counts as 0.
+// As the search for lights has it: a single pixel that outshines all its neighbours is a firefly and no light.
 bool is_light(ivec2 at) {
-    vec3 colour = texelFetch(photo, at, 0).rgb;
-    if (any(isnan(colour)) || any(isinf(colour))) return false;
-    colour = max(colour, 0.0);
-    float luminance = weights.r * colour.r + weights.g * colour.g + weights.b * colour.b;
-    return luminance >= threshold && luminance > 0.0;
+    float luminance = emitted(texelFetch(photo, at, 0), weights);
+    if (luminance < threshold || luminance <= 0.0) return false;
+    ivec2 end = textureSize(photo, 0);
+    if (limit == 0.0 || end == ivec2(1)) return true;
+    ivec2 first = max(at - 1, 0), last = min(at + 1, end - 1);
+    for (int j = first.y; j <= last.y; ++j) {
+        for (int i = first.x; i <= last.x; ++i) {
+            bool other = ivec2(i, j) != at;
+            if (other && luminance <= limit * emitted(texelFetch(photo, ivec2(i, j), 0), weights)) return true;
+        }
+    }
+    return false;
 }
 
 void main() {

@@ -34,11 +34,15 @@ pub enum Error {
     Script { path: PathBuf, reason: String },
 
     /// No lens preset has this name.
-    #[error("no lens preset is called {name:?}; there are {}", known.join(", "))]
+    #[error("no lens preset is called {name:?}{}; there are {}", meant(name, known), known.join(", "))]
     UnknownPreset { name: String, known: Vec<String> },
 
     /// f32 cannot be as exact as asked in this scene.
-    #[error("a tolerance of {asked:.1e} is below what 32-bit floats can give here: {floor:.1e}")]
+    #[error(
+        "{}; ask for --tolerance {}, or for whatever can be had by --allow-floor",
+        below_floor(*asked, *floor),
+        above(*floor)
+    )]
     ToleranceBelowFloor { asked: f64, floor: f64 },
 
     /// Even the loosest plan is expected to take longer than it may.
@@ -99,6 +103,14 @@ pub enum Error {
 }
 
 impl Error {
+    /// Why something cannot be had, without what to ask for instead: for where another way is taken anyway.
+    pub(crate) fn reason(&self) -> String {
+        match self {
+            Self::ToleranceBelowFloor { asked, floor } => below_floor(*asked, *floor),
+            error => error.to_string(),
+        }
+    }
+
     /// What the program exits with: 1 in general, 2 where the command line asks for the impossible, 3 where the
     /// tolerance or the budget cannot be or was not met, 4 where there is no OpenGL or no display. (clap's own usage errors exit with 2 as well.)
     pub fn exit_code(&self) -> u8 {
@@ -136,5 +148,57 @@ impl Error {
     /// A [`Error::SceneFile`] from anything that can say why.
     pub fn scene_file(path: &Path, reason: impl ToString) -> Self {
         Self::SceneFile { path: path.to_owned(), reason: reason.to_string() }
+    }
+}
+
+/// The name that may have been meant, as a question; empty where none is like what was given.
+fn meant(name: &str, known: &[String]) -> String {
+    let name = name.to_lowercase();
+    let alike = |known: &&String| match known.contains(&name) && name.len() > 2 {
+        true => 1.0,
+        false => strsim::jaro_winkler(&name, known),
+    };
+    let best = known.iter().max_by(|a, b| alike(a).total_cmp(&alike(b)));
+    best.filter(|best| alike(best) > 0.8).map_or_else(String::new, |best| format!("; did you mean {best}?"))
+}
+
+fn below_floor(asked: f64, floor: f64) -> String {
+    format!("a tolerance of {asked:.1e} is below what 32-bit floats can give here: {floor:.1e}")
+}
+
+/// Two digits that are no less than `floor`, for an option.
+fn above(floor: f64) -> String {
+    let unit = 10_f64.powf(floor.log10().floor() - 1.0);
+    format!("{:.1e}", unit * (1.001 * floor / unit).ceil())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_preset_that_may_have_been_meant_is_named() {
+        let known = ["classic-prime", "anamorphic", "zoom", "vintage-uncoated", "eye"].map(String::from).to_vec();
+        let said = |name: &str| Error::UnknownPreset { name: name.into(), known: known.clone() }.to_string();
+        for (name, meant) in [("vintage", "vintage-uncoated"), ("clasic-prime", "classic-prime"), ("Zoom", "zoom")] {
+            assert!(
+                said(name).contains(&format!("did you mean {meant}?; there are classic-prime, ")),
+                "{}",
+                said(name)
+            );
+        }
+        for name in ["fisheye-8mm", "x", ""] {
+            assert!(!said(name).contains("did you mean"), "{}", said(name));
+        }
+    }
+
+    #[test]
+    fn the_tolerance_that_can_be_had_is_not_below_the_floor() {
+        for floor in [3.21e-7, 9.96e-7, 1e-6, 1.99e-5, 0.04] {
+            let tolerance: f64 = above(floor).parse().unwrap();
+            assert!(tolerance > 1.0001 * floor && tolerance < 1.12 * floor, "{tolerance} for {floor}");
+        }
+        let said = Error::ToleranceBelowFloor { asked: 1e-9, floor: 3.21e-7 }.to_string();
+        assert!(said.contains("--tolerance 3.3e-7, or ") && said.contains("--allow-floor"), "{said}");
     }
 }

@@ -99,12 +99,14 @@ pub struct Bar {
     pub map: Map,
 }
 
-/// Columns of numbers; NaN is written as an empty cell.
-#[derive(Debug, Clone, PartialEq)]
+/// Columns of numbers, each with a name of its own; NaN is written as an empty cell.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Numbers {
     pub columns: Vec<String>,
     /// As many numbers in each as there are columns.
     pub rows: Vec<Vec<f64>>,
+    /// The series that each row is of, where they stand below each other; empty where they stand side by side.
+    pub series: Vec<String>,
 }
 
 /// One chart.
@@ -203,23 +205,38 @@ impl Chart {
         if self.backdrop.is_some() || self.bar.is_some() { Ok(None) } else { paint::svg(self).map(Some) }
     }
 
-    /// The numbers of all series: those that share their x stand side by side.
+    /// The numbers of all series: side by side where all share their x, otherwise below each other.
     pub fn numbers(&self) -> Numbers {
-        let mut columns: Vec<(String, Vec<f64>)> = Vec::new();
-        let mut shared: Vec<f64> = Vec::new();
-        for series in self.series.iter().filter(|series| series.stroke != Stroke::Legend) {
-            let column = |axis: usize| series.points.iter().map(|point| point[axis]).collect::<Vec<_>>();
-            let places = column(0);
-            if columns.is_empty() || places != shared {
-                columns.push((self.x.label.clone(), places.clone()));
-                shared = places;
-            }
-            columns.push((series.label.clone(), column(1)));
+        let drawn: Vec<&Series> = self.series.iter().filter(|series| series.stroke != Stroke::Legend).collect();
+        let mut names = vec![self.x.label.clone()];
+        for series in &drawn {
+            let name = unused(&names, &series.label);
+            names.push(name);
         }
-        let rows = columns.iter().map(|(_, values)| values.len()).max().unwrap_or(0);
-        let row =
-            |index: usize| columns.iter().map(|(_, values)| values.get(index).copied().unwrap_or(f64::NAN)).collect();
-        Numbers { rows: (0..rows).map(row).collect(), columns: columns.iter().map(|(name, _)| name.clone()).collect() }
+        let places = |series: &Series| series.points.iter().map(|point| point[0].to_bits()).collect::<Vec<_>>();
+        if drawn.windows(2).all(|pair| places(pair[0]) == places(pair[1])) {
+            let row = |index: usize| {
+                let y = drawn.iter().map(|series| series.points[index][1]);
+                drawn.first().map(|series| series.points[index][0]).into_iter().chain(y).collect()
+            };
+            let rows = (0..drawn.first().map_or(0, |series| series.points.len())).map(row).collect();
+            return Numbers { columns: names, rows, ..Numbers::default() };
+        }
+        let columns = vec![self.x.label.clone(), unused(&names[..1], &self.y.label)];
+        let of = |(series, name): (&&Series, &String)| vec![name.clone(); series.points.len()];
+        let series = drawn.iter().zip(&names[1..]).flat_map(of).collect();
+        let rows = drawn.iter().flat_map(|series| &series.points).map(|point| point.to_vec()).collect();
+        Numbers { columns, rows, series }
+    }
+}
+
+/// A name that none of `names` is: `name` itself, or that of the series before it with a number where it has none.
+fn unused(names: &[String], name: &str) -> String {
+    let name = if name.is_empty() { names.last().map_or("", String::as_str) } else { name };
+    let mut numbered = (2..).map(|number| format!("{name} ({number})"));
+    match names.iter().any(|other| other == name) {
+        true => numbered.find(|numbered| !names.contains(numbered)).unwrap_or_default(),
+        false => name.to_owned(),
     }
 }
 
@@ -232,12 +249,26 @@ mod tests {
         let chart = Chart::new("title", "x", "y")
             .with(Series::new("a", vec![[0.0, 1.0], [1.0, 2.0]]))
             .with(Series::new("b", vec![[0.0, 3.0], [1.0, 4.0]]))
-            .with(Series::new("c", vec![[5.0, 6.0]]));
-        let Numbers { columns, rows } = chart.numbers();
-        assert_eq!(columns, ["x", "a", "b", "x", "c"]);
-        assert_eq!(rows[0], [0.0, 1.0, 3.0, 5.0, 6.0]);
-        assert_eq!(rows[1][..3], [1.0, 2.0, 4.0]);
-        assert!(rows[1][3].is_nan() && rows[1][4].is_nan());
+            .with(Series::new("", vec![[0.0, 5.0], [1.0, 6.0]]))
+            .with(Series::new("a", vec![[0.0, 7.0], [1.0, 8.0]]));
+        let Numbers { columns, rows, series } = chart.numbers();
+        assert_eq!(columns, ["x", "a", "b", "b (2)", "a (2)"]);
+        assert_eq!(rows, [[0.0, 1.0, 3.0, 5.0, 7.0], [1.0, 2.0, 4.0, 6.0, 8.0]]);
+        assert!(series.is_empty());
+        assert_eq!(Chart::new("title", "x", "y").numbers().rows, Vec::<Vec<f64>>::new());
+    }
+
+    #[test]
+    fn numbers_of_series_with_an_x_of_their_own_stand_below_each_other() {
+        let chart = Chart::new("title", "x", "y")
+            .with(Series::new("a", vec![[0.0, 1.0], [1.0, 2.0]]))
+            .with(Series::new("b", vec![[5.0, 6.0]]));
+        let Numbers { columns, rows, series } = chart.numbers();
+        assert_eq!(
+            (columns, series),
+            (["x", "y"].map(String::from).to_vec(), ["a", "a", "b"].map(String::from).to_vec())
+        );
+        assert_eq!(rows, [[0.0, 1.0], [1.0, 2.0], [5.0, 6.0]]);
     }
 
     /// How many pixels have about this colour.

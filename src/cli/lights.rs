@@ -6,15 +6,16 @@ use std::path::PathBuf;
 use comfy_table::{CellAlignment, Table, presets};
 use serde::Serialize;
 
-use super::numbers::not_negative;
+use super::found::{self, short};
+use super::numbers::{factor, not_negative};
 use super::reading::ReadArgs;
 use super::stderr::warn;
 use super::stdout;
 use crate::Result;
 use crate::frame::Frame;
 use crate::photo;
-use crate::scene::threshold::{FLOOR, Rule};
-use crate::scene::{FindOptions, Found, Light, find};
+use crate::scene::threshold::Rule;
+use crate::scene::{Emission, FindOptions, Found, Light, find};
 
 /// Find the lights in a photo
 ///
@@ -61,6 +62,11 @@ pub struct FindArgs {
     /// At most so many lights, the brightest [default: 64]
     #[arg(long, value_name = "N")]
     max_lights: Option<usize>,
+
+    /// A single pixel that is more than so many times as bright as each of its neighbours is a firefly or a hot pixel,
+    /// and no light; 0 takes it as it is [default: 5000]
+    #[arg(long, value_name = "F", value_parser = factor)]
+    firefly_limit: Option<f64>,
 }
 
 impl FindArgs {
@@ -70,6 +76,7 @@ impl FindArgs {
             threshold: self.threshold.or(set.threshold),
             merge: self.merge.unwrap_or(set.merge),
             max_lights: self.max_lights.unwrap_or(set.max_lights),
+            firefly_limit: self.firefly_limit.unwrap_or(set.firefly_limit),
         }
     }
 }
@@ -82,8 +89,9 @@ impl FindArgs {
 pub fn run(args: &Args) -> Result<()> {
     let photo = photo::read_with(&args.photo, &args.reading.options())?;
     warn(&photo.source.notes);
-    let found = find(&photo.pixels, &photo.frame, photo.luminance_weights(), &args.find.over(FindOptions::default()));
-    stdout::print(|out| if args.json { json(out, &found) } else { table(out, &found, &photo.frame) })
+    let options = args.find.over(FindOptions::default());
+    let found = find(&photo.pixels, &photo.frame, Emission::of(&photo), &options);
+    stdout::print(|out| if args.json { json(out, &found) } else { table(out, &found, &options, &photo.frame) })
 }
 
 /// Found lights as `scene::read_lights` reads them.
@@ -95,7 +103,21 @@ struct Json {
     merged: usize,
     dropped: usize,
     dropped_share: f64,
+    fireflies: FirefliesJson,
     lights: Vec<LightJson>,
+}
+
+/// Pixels that outshine their neighbours and are no light, and column and row of the first.
+#[derive(Serialize)]
+pub struct FirefliesJson {
+    count: usize,
+    first: Option<[i32; 2]>,
+}
+
+impl From<&Found> for FirefliesJson {
+    fn from(found: &Found) -> Self {
+        Self { count: found.fireflies, first: found.first_firefly.map(Into::into) }
+    }
 }
 
 #[derive(Serialize)]
@@ -119,13 +141,14 @@ fn json(out: &mut dyn Write, found: &Found) -> io::Result<()> {
         merged: found.merged(),
         dropped: found.dropped,
         dropped_share: found.dropped_share,
+        fireflies: found.into(),
         lights: found.lights.iter().map(LightJson::from).collect(),
     };
     serde_json::to_writer_pretty(&mut *out, &json)?;
     writeln!(out)
 }
 
-fn table(out: &mut dyn Write, found: &Found, frame: &Frame) -> io::Result<()> {
+fn table(out: &mut dyn Write, found: &Found, options: &FindOptions, frame: &Frame) -> io::Result<()> {
     if !found.lights.is_empty() {
         let mut table = Table::new();
         table.load_style(presets::NOTHING);
@@ -136,7 +159,7 @@ fn table(out: &mut dyn Write, found: &Found, frame: &Frame) -> io::Result<()> {
         table.column_iter_mut().for_each(|column| column.set_cell_alignment(CellAlignment::Right));
         writeln!(out, "{}", table.trim_fmt())?;
     }
-    writeln!(out, "{}", summary(found))
+    writeln!(out, "{}", summary(found, options))
 }
 
 fn row(number: usize, light: &Light, share: f64, frame: &Frame) -> [String; 10] {
@@ -147,33 +170,23 @@ fn row(number: usize, light: &Light, share: f64, frame: &Frame) -> [String; 10] 
     [number.to_string(), x, y, column, row, r, g, b, format!("{:.4}", light.size), format!("{:.2}", 100.0 * share)]
 }
 
-fn summary(found: &Found) -> String {
-    let threshold = short(found.threshold);
-    let rule = match found.rule {
-        Rule::Given => "as given".to_owned(),
-        Rule::Split => "which splits the photo's flux best into light and scene".to_owned(),
-        Rule::Mean => format!("{FLOOR} times the mean luminance"),
-        Rule::Clipped => "just below the level at which highlights are clipped".to_owned(),
+fn summary(found: &Found, options: &FindOptions) -> String {
+    let told = if found.regions == 0 {
+        format!("No lights: {}.", found::none(found))
+    } else {
+        let (threshold, rule) = (short(found.threshold), found::rule(found.rule));
+        let (regions, lights, merged) = (found.regions, found.lights.len(), found.merged());
+        let dropped = match found.dropped {
+            0 => "none dropped".to_owned(),
+            n => format!("{n} dropped with {:.2} % of the flux", 100.0 * found.dropped_share),
+        };
+        format!(
+            "Threshold luminance {threshold}, {rule}. {regions} regions: {lights} lights, {merged} merged, {dropped}."
+        )
     };
-    if found.regions == 0 {
-        return format!("No lights: no pixel reaches the threshold luminance {threshold}, {rule}.");
-    }
-    let (regions, lights, merged) = (found.regions, found.lights.len(), found.merged());
-    let dropped = match found.dropped {
-        0 => "none dropped".to_owned(),
-        n => format!("{n} dropped with {:.2} % of the flux", 100.0 * found.dropped_share),
-    };
-    format!("Threshold luminance {threshold}, {rule}. {regions} regions: {lights} lights, {merged} merged, {dropped}.")
-}
-
-/// Four significant digits.
-fn short(x: f64) -> String {
-    if x == 0.0 {
-        return "0".to_owned();
-    }
-    match x.abs().log10().floor() as i32 {
-        exponent @ -4..=5 => format!("{x:.*}", (3 - exponent).max(0) as usize),
-        _ => format!("{x:.3e}"),
+    match found::fireflies(found, options) {
+        Some(fireflies) => format!("{told}\nFireflies: {fireflies}."),
+        None => told,
     }
 }
 
@@ -198,7 +211,7 @@ mod tests {
         pixels[2 * 40 + 30] = [900.1, 800.2, 700.3, 1.0];
         pixels[12 * 40 + 5] = [50.0, 30.0, 0.0, 1.0];
         pixels[18 * 40 + 5] = [500.0, 30.0, 0.0, 1.0];
-        let options = FindOptions { max_lights: 2, ..FindOptions::default() };
+        let options = FindOptions { max_lights: 2, firefly_limit: 0.0, ..FindOptions::default() };
         (find(&pixels, &frame, [0.2126, 0.7152, 0.0722], &options), frame)
     }
 
@@ -212,9 +225,16 @@ mod tests {
     fn options_are_those_given_or_the_librarys() {
         let options = |args: &[&str]| parsed(args).unwrap().find.over(FindOptions::default());
         assert_eq!(options(&["a.exr"]), FindOptions::default());
-        let given = options(&["a.exr", "--threshold", "2.5", "--merge", "0", "--max-lights", "7"]);
-        assert_eq!(given, FindOptions { threshold: Some(2.5), merge: 0.0, max_lights: 7 });
-        for bad in [["--threshold", "nan"], ["--threshold=-1", "--json"], ["--merge", "inf"], ["--max-lights", "-1"]] {
+        let given =
+            options(&["a.exr", "--threshold", "2.5", "--merge", "0", "--max-lights", "7", "--firefly-limit", "1"]);
+        assert_eq!(given, FindOptions { threshold: Some(2.5), merge: 0.0, max_lights: 7, firefly_limit: 1.0 });
+        for bad in [
+            ["--threshold", "nan"],
+            ["--threshold=-1", "--json"],
+            ["--merge", "inf"],
+            ["--max-lights", "-1"],
+            ["--firefly-limit", "0.5"],
+        ] {
             assert!(parsed(&["a.exr", bad[0], bad[1]]).is_err(), "{bad:?}");
         }
     }
@@ -231,7 +251,7 @@ mod tests {
     #[test]
     fn the_table_has_a_row_for_each_light_and_a_summary() {
         let (found, frame) = found();
-        let text = printed(|out| table(out, &found, &frame));
+        let text = printed(|out| table(out, &found, &FindOptions::default(), &frame));
         assert!(text.contains("30.0") && text.contains("18.0"), "{text}");
         let summary = text.lines().last().unwrap();
         assert!(summary.contains("3 regions: 2 lights, 0 merged, 1 dropped with "), "{text}");
@@ -241,15 +261,7 @@ mod tests {
     fn a_photo_without_lights_says_so() {
         let frame = Frame::full(2, 2);
         let found = find(&[[0.5; 4]; 4], &frame, [0.2126, 0.7152, 0.0722], &FindOptions::default());
-        let text = printed(|out| table(out, &found, &frame));
-        assert!(text.starts_with("No lights: ") && text.lines().count() == 1, "{text}");
-    }
-
-    #[test]
-    fn numbers_have_four_digits() {
-        let cases = [(0.0, "0"), (13.5, "13.50"), (0.00012344, "0.0001234"), (123456.7, "123457"), (-2.0, "-2.000")];
-        for (x, text) in cases.into_iter().chain([(1e-9, "1.000e-9"), (2.5e12, "2.500e12")]) {
-            assert_eq!(short(x), text);
-        }
+        let text = printed(|out| table(out, &found, &FindOptions::default(), &frame));
+        assert!(text.starts_with("No lights: nothing stands out: ") && text.lines().count() == 1, "{text}");
     }
 }

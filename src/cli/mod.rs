@@ -4,6 +4,7 @@ mod accuracy;
 mod apply;
 mod bench;
 mod calibrate;
+mod found;
 mod harmonics;
 mod info;
 mod lights;
@@ -20,6 +21,7 @@ mod stdout;
 mod tradeoff;
 mod view;
 
+use clap::error::{ContextKind, ContextValue};
 use clap::{Parser, Subcommand};
 
 use crate::Result;
@@ -61,6 +63,22 @@ enum Command {
     Info(info::Args),
     Completions(shell::CompletionsArgs),
     Man(shell::ManArgs),
+}
+
+/// What the command line says. Where it cannot be understood, or asks for help, that is printed and the program ends.
+pub fn parse() -> Cli {
+    Cli::try_parse().unwrap_or_else(|error| without_dashes(error).exit())
+}
+
+/// The error without the tip to put `--` before an option that is mistyped, which would make it a photo's name.
+fn without_dashes(mut error: clap::Error) -> clap::Error {
+    if let Some(ContextValue::StyledStrs(tips)) = error.remove(ContextKind::Suggested) {
+        let tips: Vec<_> = tips.into_iter().filter(|tip| !tip.to_string().contains(" as a value, use ")).collect();
+        if !tips.is_empty() {
+            error.insert(ContextKind::Suggested, ContextValue::StyledStrs(tips));
+        }
+    }
+    error
 }
 
 /// Runs the command.

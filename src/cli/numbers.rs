@@ -2,9 +2,10 @@
 
 use glam::DVec2;
 
-/// A number that is neither NaN nor infinite.
+/// A number that is neither NaN nor infinite, and is neither in 32-bit floats.
 pub fn finite(text: &str) -> Result<f64, String> {
-    text.parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(|| "expected a finite number".to_owned())
+    let single = |x: &f64| x.abs() <= f64::from(f32::MAX);
+    text.parse::<f64>().ok().filter(single).ok_or_else(|| "expected a finite number".to_owned())
 }
 
 /// A finite number above 0.
@@ -29,4 +30,10 @@ pub fn colour(text: &str) -> Result<[f64; 3], String> {
 /// A number from 0 on, not infinite.
 pub fn not_negative(text: &str) -> Result<f64, String> {
     finite(text).ok().filter(|&x| x >= 0.0).ok_or_else(|| "expected a finite number that is not negative".to_owned())
+}
+
+/// 0 for none, or a finite number of at least 1.
+pub fn factor(text: &str) -> Result<f64, String> {
+    let allowed = |&x: &f64| x == 0.0 || x >= 1.0;
+    finite(text).ok().filter(allowed).ok_or_else(|| "expected 0, or a finite number of at least 1".to_owned())
 }

@@ -26,9 +26,13 @@ pub struct SceneArgs {
     #[arg(long, value_name = "FILE")]
     lens: Option<PathBuf>,
 
-    /// The lights, from a file: [[light]] tables, or what `vglare lights --json` printed
+    /// The lights, from a file instead of the photo: [[light]] tables, or what `vglare lights --json` printed
     #[arg(long, value_name = "FILE")]
     lights: Option<PathBuf>,
+
+    /// More lights, from such a file, beside those of the photo (or of --lights, or of the scene file)
+    #[arg(long, value_name = "FILE")]
+    add_lights: Option<PathBuf>,
 
     /// Where the lens's axis meets the picture, in half picture heights from its centre: ghosts lie on lines through it
     /// [default: 0,0]
@@ -53,6 +57,9 @@ impl SceneArgs {
         }
         if let Some(path) = &self.lights {
             look.lights = LookLights::Listed(scene::read_lights(path)?);
+        }
+        if let Some(path) = &self.add_lights {
+            look.add_lights(scene::read_lights(path)?);
         }
         look.axis = self.axis.unwrap_or(look.axis);
         Ok(look)

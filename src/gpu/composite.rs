@@ -37,6 +37,8 @@ pub(crate) struct Variant {
     pub normalize: &'static str,
     /// Whether the photo's lights are multiplied by `light_gain`.
     pub take_light: bool,
+    /// Whether the photo's colours are not multiplied by alpha, which tells its lights.
+    pub straight: bool,
 }
 
 impl Variant {
@@ -45,6 +47,9 @@ impl Variant {
         defines.push(("NORMALIZE", self.normalize));
         if self.take_light {
             defines.push(("TAKE_LIGHT", "1"));
+            if self.straight {
+                defines.push(("STRAIGHT", "1"));
+            }
         }
         defines
     }

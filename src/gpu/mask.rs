@@ -26,8 +26,11 @@ pub(crate) struct Mask {
     pub mark: [f32; 3],
     /// Rows and columns that a pixel of the screen looks at, at most.
     pub most: u32,
+    /// How many times as bright as its brightest neighbour a pixel may be; 0 for whatever it likes.
+    pub limit: f32,
+    pub pad: [u32; 3],
 }
-const _: () = assert!(size_of::<Mask>() == 48);
+const _: () = assert!(size_of::<Mask>() == 64);
 
 /// Draws the mask.
 pub(crate) struct MaskPass {
@@ -39,18 +42,21 @@ impl MaskPass {
         Ok(Self { uniforms: Buffer::new(runner.device(), 1)? })
     }
 
-    /// Marks what is light in a region of the screen; the rest of it stays.
+    /// Marks what is light in a region of the screen, by the photo's straight alpha where it has one; the rest of it
+    /// stays.
     pub fn draw(
         &mut self,
         runner: &Runner,
         photo: &Texture,
         mask: &Mask,
+        straight: bool,
         screen: &Screen,
         region: Region,
     ) -> Result<()> {
         self.uniforms.store(&[Mask { rows: screen.size()[1] as f32, ..*mask }])?;
         self.uniforms.bind_uniform(PASS);
         photo.bind(PHOTO);
-        runner.draw_screen("mask.frag", &[], screen, region)
+        let defines: &[_] = if straight { &[("STRAIGHT", "1")] } else { &[] };
+        runner.draw_screen("mask.frag", defines, screen, region)
     }
 }

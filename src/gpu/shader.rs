@@ -58,6 +58,7 @@ const SOURCES: &[(&str, &str)] = &sources![
     "range.frag",
     "shared/bessel.glsl",
     "shared/bspline.glsl",
+    "shared/emission.glsl",
     "shared/knots.glsl",
     "shared/normalized.glsl",
     "shared/phase.glsl",

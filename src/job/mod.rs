@@ -11,6 +11,7 @@
 //! # Ok::<(), vglare::Error>(())
 //! ```
 
+mod excess;
 mod planned;
 mod settings;
 
@@ -192,6 +193,7 @@ impl<'a> Job<'a> {
             self.warnings.extend(planned.warnings.iter().cloned());
         }
         self.info = Some(computer.info.clone());
+        self.warnings.extend(self.absurd(&planned.plan));
 
         begin(watch, "computing the glare")?;
         let renderer = match &mut computer.renderer {

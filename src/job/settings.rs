@@ -4,7 +4,7 @@ use crate::choices::{Mix, Normalize};
 use crate::look::{Gathered, Look};
 use crate::photo::Photo;
 use crate::renderer::Settings;
-use crate::scene::Ghost;
+use crate::scene::{Emission, Ghost};
 use crate::{Error, Result};
 
 /// What the composite is told, and what to warn of. Where light is taken from the photo's lights, `bright` gives
@@ -21,7 +21,7 @@ pub fn settings(
     let mut settings = Settings {
         strength: look.strength,
         normalize: look.normalize,
-        luminance: photo.luminance_weights(),
+        emission: Emission::of(photo),
         ..Settings::default()
     };
     if look.mix == Mix::Add {
@@ -41,18 +41,18 @@ pub fn settings(
 }
 
 /// The flux of all pixels of a photo at or above a luminance, RGB, in the photo's unit times half picture heights
-/// squared.
+/// squared: what they give, also of negative channels. Fireflies count here as what they are.
 pub fn bright_light(photo: &Photo, threshold: f64) -> [f64; 3] {
-    let weights = photo.luminance_weights();
-    let area = photo.frame.pixel_size().powi(2);
+    let emission = Emission::of(photo);
+    let (area, threshold) = (photo.frame.pixel_size().powi(2), threshold as f32);
     let mut bright = [0.0; 3];
     for pixel in &photo.pixels {
-        let light = [pixel[0], pixel[1], pixel[2]].map(f64::from);
-        let luminance: f64 = light.iter().zip(weights).map(|(light, weight)| light * weight).sum();
-        // As the composite's shader decides; NaN is never at or above anything.
-        if luminance >= threshold && light.iter().all(|light| light.is_finite()) {
-            for (bright, light) in bright.iter_mut().zip(light) {
-                *bright += light * area;
+        // As the composite's shader decides.
+        let luminance = emission.luminance(pixel);
+        if luminance >= threshold && luminance > 0.0 {
+            let share = f64::from(emission.share(pixel)) * area;
+            for (bright, &light) in bright.iter_mut().zip(pixel) {
+                *bright += f64::from(light) * share;
             }
         }
     }
@@ -77,6 +77,7 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
+    use crate::photo::{Alpha, Primaries};
     use crate::series::Bell;
 
     #[test]
@@ -98,5 +99,19 @@ mod tests {
         let (gain, enough) = light_gain(bright_light(&photo, f64::INFINITY), &[ghost(1.0)], 1.0);
         assert_eq!((gain, enough), ([0.0, 1.0, 1.0], false));
         assert_eq!(light_gain(bright_light(&photo, 10.0), &[], 1.0), ([1.0; 3], true));
+    }
+
+    #[test]
+    fn straight_alpha_takes_its_share_of_bright_light_and_darker_than_black_has_none() {
+        let mut photo = Photo::new(5, 1, [0.0, 0.25, 0.5, 1.0, f32::NAN].map(|alpha| [8.0, 4.0, -2.0, alpha]).to_vec());
+        // A pixel's area is 2 × 2.
+        let whole = [8.0, 4.0, -2.0].map(|light: f64| 4.0 * light);
+        assert_eq!(bright_light(&photo, 1.0), whole.map(|light| 5.0 * light));
+        photo.source.alpha = Alpha::Straight;
+        assert_eq!(bright_light(&photo, 1.0), whole.map(|light| 1.75 * light));
+        assert_eq!(bright_light(&photo, 2.0), whole.map(|light| 1.5 * light));
+        photo.source.primaries = Some(Primaries::ACES2065_1);
+        photo.pixels.fill([0.0, 0.0, 9.0, 1.0]);
+        assert_eq!(bright_light(&photo, 0.0), [0.0; 3]);
     }
 }

@@ -14,6 +14,8 @@ impl Look {
         // Ghosts alone are the whole scene: nothing then is looked for in the photo.
         let ghosts_only = !scene.ghosts.is_empty() && scene.lens_ghosts.is_empty() && scene.preset.is_none();
         let lights = match scene.lights {
+            Some(lights) if scene.find.add && !lights.is_empty() => LookLights::FoundAnd(lights),
+            Some(_) | None if scene.find.add => LookLights::Found,
             Some(lights) => LookLights::Listed(lights),
             None if ghosts_only => LookLights::Listed(Vec::new()),
             None => LookLights::Found,
@@ -57,10 +59,11 @@ impl Look {
         };
         let lights = match &self.lights {
             LookLights::Found => None,
-            LookLights::Listed(lights) => Some(lights.clone()),
+            LookLights::Listed(lights) | LookLights::FoundAnd(lights) => Some(lights.clone()),
         };
+        let add = matches!(self.lights, LookLights::FoundAnd(_));
         let Accuracy { goal, allow_floor, degree, period, evaluator } = self.accuracy;
-        let FindOptions { threshold, merge, max_lights } = self.find;
+        let FindOptions { threshold, merge, max_lights, firefly_limit } = self.find;
         SceneFile {
             description: self.description.clone(),
             preset,
@@ -74,7 +77,13 @@ impl Look {
                 mix: Some(self.mix),
                 normalize: Some(self.normalize),
             },
-            find: FindSection { threshold, merge: Some(merge), max_lights: Some(max_lights) },
+            find: FindSection {
+                threshold,
+                merge: Some(merge),
+                max_lights: Some(max_lights),
+                firefly_limit: Some(firefly_limit),
+                add,
+            },
             accuracy: AccuracySection { goal: Some(goal), allow_floor, evaluator },
             lights,
             ghosts: self.ghosts.clone(),
@@ -113,7 +122,7 @@ mod tests {
             tint: [1.0, 0.3, 0.0],
             lights: LookLights::Listed(vec![light]),
             ghosts: vec![ghost.clone()],
-            find: FindOptions { threshold: Some(3.5), merge: 0.1, max_lights: 5 },
+            find: FindOptions { threshold: Some(3.5), merge: 0.1, max_lights: 5, firefly_limit: 20.0 },
             strength: 1.7,
             mix: Mix::Energy,
             normalize: Normalize::None,
@@ -128,7 +137,8 @@ mod tests {
         let none = Look { lights: LookLights::Listed(Vec::new()), ..Look::default() };
         // Without the preset's name the ghost would be the whole scene.
         let ghost_and_photo = Look { ghosts: vec![ghost], ..Look::default() };
-        for look in [Look::default(), full.clone(), none, ghost_and_photo] {
+        let added = Look { lights: LookLights::FoundAnd(vec![light]), ..Look::default() };
+        for look in [Look::default(), full.clone(), none, ghost_and_photo, added] {
             assert_eq!(through_a_file(&look), look);
         }
         let filed = Look { lens: LookLens::File("lens.toml".into(), presets::named("zoom").unwrap()), ..full.clone() };
@@ -146,5 +156,35 @@ mod tests {
     #[test]
     fn an_empty_file_is_the_default_look() {
         assert_eq!(Look::from_scene(SceneFile::default()).unwrap(), Look::default());
+    }
+
+    #[test]
+    fn a_file_adds_its_lights_to_the_photos() {
+        let light = Light { position: DVec2::ONE, flux: [1.0; 3], size: 0.0, muted: false };
+        let file = |lights| SceneFile {
+            find: FindSection { add: true, ..FindSection::default() },
+            lights,
+            ..SceneFile::default()
+        };
+        let look = Look::from_scene(file(Some(vec![light]))).unwrap();
+        assert_eq!(look.lights, LookLights::FoundAnd(vec![light]));
+        let found = Light { flux: [2.0; 3], ..light };
+        assert_eq!((&*look.lights(&[found]), look.searches()), (&[found, light][..], true));
+        for nothing in [None, Some(Vec::new())] {
+            assert_eq!(Look::from_scene(file(nothing)).unwrap().lights, LookLights::Found);
+        }
+    }
+
+    #[test]
+    fn lights_are_added_to_what_there_is() {
+        let light = Light { position: DVec2::ONE, flux: [1.0; 3], size: 0.0, muted: false };
+        let added = |lights| {
+            let mut look = Look { lights, ..Look::default() };
+            look.add_lights(vec![light]);
+            look.lights
+        };
+        assert_eq!(added(LookLights::Found), LookLights::FoundAnd(vec![light]));
+        assert_eq!(added(LookLights::FoundAnd(vec![light])), LookLights::FoundAnd(vec![light; 2]));
+        assert_eq!(added(LookLights::Listed(Vec::new())), LookLights::Listed(vec![light]));
     }
 }

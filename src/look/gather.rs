@@ -3,7 +3,7 @@
 use super::{Look, LookLights};
 use crate::choices::Mix;
 use crate::photo::Photo;
-use crate::scene::{self, Found, Ghost, Lens, Light};
+use crate::scene::{self, Emission, Found, Ghost, Lens, Light};
 
 /// What glares in one photo.
 pub struct Gathered {
@@ -26,14 +26,19 @@ impl Look {
 
     /// What glares in a photo of which `found` is known.
     pub fn gather_from(&self, found: Option<Found>) -> Gathered {
-        let lights = self.lights(found.as_ref().map_or(&[], |found| &found.lights)).to_vec();
+        let lights = self.lights(found.as_ref().map_or(&[], |found| &found.lights)).into_owned();
         let lens = (!lights.is_empty()).then(|| self.lens());
         Gathered { ghosts: self.ghosts(&lights), found, lights, lens }
     }
 
     /// Whether a photo is to be searched: for lights, or for the threshold that tells them from the rest.
     pub fn searches(&self) -> bool {
-        self.lights == LookLights::Found || self.mix == Mix::Energy
+        self.finds() || self.mix == Mix::Energy
+    }
+
+    /// Whether lights of the photo shine.
+    pub fn finds(&self) -> bool {
+        !matches!(self.lights, LookLights::Listed(_))
     }
 
     /// Whether there is any glare to be rendered.
@@ -43,7 +48,7 @@ impl Look {
 
     /// Searches a photo for lights.
     pub fn find(&self, photo: &Photo) -> Found {
-        scene::find(&photo.pixels, &photo.frame, photo.luminance_weights(), &self.find)
+        scene::find(&photo.pixels, &photo.frame, Emission::of(photo), &self.find)
     }
 
     /// The ghosts that the lens makes of `lights`, then those that no light makes, in the look's size and tint.

@@ -3,6 +3,7 @@
 mod file;
 mod gather;
 
+use std::borrow::Cow;
 use std::path::PathBuf;
 
 use glam::DVec2;
@@ -61,6 +62,8 @@ pub enum LookLights {
     Found,
     /// By hand, or from a file.
     Listed(Vec<Light>),
+    /// The photo is searched, and these are added to what is found; never empty.
+    FoundAnd(Vec<Light>),
 }
 
 /// How exact the glare is, and how it is computed; what is `None` is planned.
@@ -127,11 +130,21 @@ impl Look {
         }
     }
 
-    /// The lights, of which `found` are the photo's.
-    pub fn lights<'a>(&'a self, found: &'a [Light]) -> &'a [Light] {
+    /// The lights, of which `found` are the photo's; they come first.
+    pub fn lights<'a>(&'a self, found: &'a [Light]) -> Cow<'a, [Light]> {
         match &self.lights {
-            LookLights::Found => found,
-            LookLights::Listed(lights) => lights,
+            LookLights::Found => found.into(),
+            LookLights::Listed(lights) => lights.into(),
+            LookLights::FoundAnd(lights) => [found, lights].concat().into(),
+        }
+    }
+
+    /// Adds lights to those that are found or listed.
+    pub fn add_lights(&mut self, more: Vec<Light>) {
+        match &mut self.lights {
+            LookLights::Found if more.is_empty() => {}
+            LookLights::Found => self.lights = LookLights::FoundAnd(more),
+            LookLights::Listed(lights) | LookLights::FoundAnd(lights) => lights.extend(more),
         }
     }
 }

@@ -43,8 +43,13 @@ type Reason = Box<dyn std::error::Error>;
 
 /// Numbers as CSV; what is no number becomes an empty cell.
 pub(crate) fn numbers_csv(numbers: &Numbers) -> Result<String, Reason> {
-    let rows = numbers.rows.iter().map(|row| row.iter().map(|&value| (!value.is_nan()).then_some(value)));
-    csv_text(&numbers.columns, rows.map(Iterator::collect::<Vec<_>>))
+    let cells = |row: &Vec<f64>| row.iter().map(|&value| (!value.is_nan()).then_some(value)).collect::<Vec<_>>();
+    let rows = numbers.rows.iter().map(cells);
+    if numbers.series.is_empty() {
+        return csv_text(&numbers.columns, rows);
+    }
+    let columns = [&["series".to_owned()], &numbers.columns[..]].concat();
+    csv_text(&columns, numbers.series.iter().zip(rows))
 }
 
 /// Rows under a header as CSV.
@@ -64,7 +69,9 @@ mod tests {
     #[test]
     fn numbers_become_csv_with_empty_cells_for_what_is_missing() {
         let columns = ["x", "y, squared"].map(String::from).to_vec();
-        let numbers = Numbers { columns, rows: vec![vec![0.1, 1e-20], vec![0.2, f64::NAN]] };
+        let numbers = Numbers { columns, rows: vec![vec![0.1, 1e-20], vec![0.2, f64::NAN]], series: Vec::new() };
         assert_eq!(numbers_csv(&numbers).unwrap(), "x,\"y, squared\"\n0.1,1e-20\n0.2,\n");
+        let named = Numbers { series: ["a", "b"].map(String::from).to_vec(), ..numbers };
+        assert_eq!(numbers_csv(&named).unwrap(), "series,x,\"y, squared\"\na,0.1,1e-20\nb,0.2,\n");
     }
 }

@@ -22,7 +22,8 @@ img { max-width: 100%; height: auto; background: #fff; border: 1px solid var(--l
 .wide { overflow-x: auto } table { border-collapse: collapse; margin: .8rem 0; font-size: .95rem }
 caption { text-align: left; padding-bottom: .4rem }
 th, td { text-align: left; padding: .25rem 1.1rem .25rem 0; border-bottom: 1px solid var(--line); vertical-align: top }
-td.number { text-align: right; font-variant-numeric: tabular-nums }
+code, .unbroken { white-space: nowrap }
+td.number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums }
 details { background: var(--card); border-radius: 6px; padding: .5rem .9rem; margin: .8rem 0 }
 nav ol { padding-left: 1.2rem } footer { margin-top: 4rem; border-top: 1px solid var(--line); padding-top: .8rem }
 ";
@@ -50,7 +51,7 @@ pub(crate) fn pairs(caption: &str, pairs: &[(String, String)]) -> String {
         let _ = writeln!(text, "<caption>{}</caption>", escaped(caption));
     }
     for (name, value) in pairs {
-        let _ = writeln!(text, "<tr><th scope=\"row\">{}</th>{}</tr>", escaped(name), cell(value));
+        let _ = writeln!(text, "<tr><th scope=\"row\">{}</th>{}</tr>", shown(name), cell(value));
     }
     text + "</table></div>\n"
 }
@@ -58,10 +59,50 @@ pub(crate) fn pairs(caption: &str, pairs: &[(String, String)]) -> String {
 /// A cell; numbers stand at the right.
 pub(crate) fn cell(value: &str) -> String {
     let number = value.parse::<f64>().is_ok();
-    format!("<td{}>{}</td>", if number { " class=\"number\"" } else { "" }, escaped(value))
+    format!("<td{}>{}</td>", if number { " class=\"number\"" } else { "" }, shown(value))
+}
+
+/// Text between tags: escaped, and with numbers like 3.2e-3 kept on one line, which browsers would break at the hyphen.
+pub(crate) fn shown(text: &str) -> String {
+    unbroken(&escaped(text))
+}
+
+/// Text that is escaped already, with such numbers kept on one line.
+pub(crate) fn unbroken(text: &str) -> String {
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some(at) = rest.find("e-") {
+        let (before, after) = (&rest[..at], &rest[at + 2..]);
+        let start = before.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.').len();
+        let end = after.find(|c: char| !c.is_ascii_digit()).unwrap_or(after.len());
+        let (words, number) = (&before[..start], &rest[start..at + 2 + end]);
+        match start < at && end > 0 {
+            true => out.extend([words, "<span class=\"unbroken\">", number, "</span>"]),
+            false => out.extend([words, number]),
+        }
+        rest = &after[end..];
+    }
+    out + rest
 }
 
 /// Text as it may stand in HTML.
 pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_with_exponents_are_not_broken() {
+        let number = "<span class=\"unbroken\">3.2e-3</span>";
+        assert_eq!(shown("error 3.2e-3; a <b>"), format!("error {number}; a &lt;b&gt;"));
+        assert_eq!(cell("3.2e-3"), format!("<td class=\"number\">{number}</td>"));
+        assert_eq!(shown("(3.2e-3)"), format!("({number})"));
+        for words in ["the-fine e-mail", "e-3", "1e", "1e-x", "1e3", "", "e-"] {
+            assert_eq!(shown(words), words);
+        }
+        assert!(shown("1e-1 to 1e-6").ends_with(" to <span class=\"unbroken\">1e-6</span>"));
+    }
 }

@@ -54,7 +54,7 @@ pub use read::{MAX_PIXELS, Missing, ReadOptions, read, read_with};
 pub(crate) use shown::Shown;
 pub use tone::ToneMap;
 pub(crate) use transfer::srgb_encode;
-pub use write::{WriteOptions, check_name, check_target, write, write_unless};
+pub use write::{WriteOptions, check_name, check_target, largest_value, write, write_unless};
 
 use crate::frame::Frame;
 

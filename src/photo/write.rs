@@ -62,6 +62,21 @@ pub fn check_target(path: &Path, photo: &Photo, options: &WriteOptions) -> Resul
     }
 }
 
+/// The largest value of light that the file would hold: beyond it a pixel is not what it was. Infinite for a display's
+/// formats, which show what is brighter than white as white.
+///
+/// # Errors
+/// [`Error::Write`] for an extension that is no format, or a depth that the format cannot hold.
+pub fn largest_value(path: &Path, photo: &Photo, options: &WriteOptions) -> Result<f32> {
+    let depth = Format::from_extension(path).and_then(|format| depth(format, photo, options.depth));
+    Ok(match depth.map_err(|reason| Error::write(path, reason))? {
+        Depth::Half => half::f16::MAX.to_f32(),
+        Depth::Float => f32::MAX,
+        Depth::Uint => u32::MAX as f32,
+        Depth::Eight | Depth::Sixteen => f32::INFINITY,
+    })
+}
+
 /// Writes a photo in the format that the extension names (`.exr .hdr .pfm .tif .tiff .png .jpg .jpeg`).
 ///
 /// Scene-linear formats get the pixels as they are; display formats get exposure, tone map and the sRGB curve, and at

@@ -267,7 +267,7 @@ pub fn plan(ghosts: &[Ghost], asked: &Request) -> Result<Plan> {
     let cheapest = candidates.into_iter().min_by(|a, b| a.costs[0].milliseconds.total_cmp(&b.costs[0].milliseconds));
     match cheapest {
         Some(plan) => {
-            let told = |(evaluator, error): (Evaluator, Error)| Refusal { evaluator, reason: error.to_string() };
+            let told = |(evaluator, error): (Evaluator, Error)| Refusal { evaluator, reason: error.reason() };
             Ok(Plan { costs, refused: refusals.into_iter().map(told).collect(), ..plan })
         }
         None => {

@@ -47,7 +47,8 @@ fn one_kind(plan: &Plan) -> Option<&Bell> {
 
 /// The composite that the settings ask for.
 pub(super) fn variant(source: Source, settings: &Settings) -> Variant {
-    Variant { source, normalize: normalize(settings), take_light: settings.light_gain != [1.0; 3] }
+    let (take_light, straight) = (settings.light_gain != [1.0; 3], settings.emission.straight);
+    Variant { source, normalize: normalize(settings), take_light, straight }
 }
 
 /// How values become glare, by its number in `shared/normalized.glsl`.
@@ -134,7 +135,7 @@ pub(super) fn uniforms(plan: &Plan, settings: &Settings) -> Composite {
         scale: rgb(plan.scale, 0.0),
         constant: rgb(constant, 0.0),
         light_gain: rgb(settings.light_gain, 1.0),
-        luminance: rgb(settings.luminance, settings.threshold),
+        luminance: rgb(settings.emission.weights.map(f64::from), settings.threshold),
         strength: settings.strength as f32,
         flat: (2.0 * plan.predicted.single() * plan.scale.iter().fold(0.0, |a: f64, &b| a.max(b))) as f32,
         pad: [0.0; 2],

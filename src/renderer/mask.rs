@@ -6,6 +6,7 @@ use super::Renderer;
 use crate::Result;
 use crate::gpu::mask::Mask as Uniforms;
 use crate::gpu::{Region, Screen};
+use crate::scene::Emission;
 
 /// The colour of a mark, as shown: of no tone map, and not that of an error beyond the tolerance.
 const MARK: [f32; 3] = [1.0, 0.1, 0.15];
@@ -18,8 +19,11 @@ const MOST: u32 = 12;
 pub struct Mask {
     /// Linear luminance, in the photo's unit, from which on a pixel is light.
     pub threshold: f64,
-    /// Those of the photo's linear R, G and B in luminance.
-    pub weights: [f64; 3],
+    /// How many times as bright as its brightest neighbour a single pixel may be, and still is light; 0 for whatever it
+    /// likes.
+    pub firefly_limit: f64,
+    /// How a pixel gives light.
+    pub emission: Emission,
     /// Where the region's top left corner lies on the photo, in its pixels from its top left corner.
     pub origin: DVec2,
     /// The photo's pixels from one of the screen to the next; less than 1 magnifies.
@@ -36,14 +40,16 @@ impl Renderer {
         // The shader counts from the screen's corner.
         let corner = DVec2::new(f64::from(region.x), f64::from(region.y));
         let uniforms = Uniforms {
-            weights: mask.weights.map(|weight| weight as f32),
+            weights: mask.emission.weights,
             threshold: mask.threshold as f32,
             origin: (mask.origin - mask.pitch * corner).as_vec2().to_array(),
             pitch: mask.pitch as f32,
             rows: 0.0,
             mark: MARK,
             most: MOST,
+            limit: mask.firefly_limit as f32,
+            pad: [0; 3],
         };
-        self.mask.draw(&self.runner, photo, &uniforms, screen, region)
+        self.mask.draw(&self.runner, photo, &uniforms, mask.emission.straight, screen, region)
     }
 }

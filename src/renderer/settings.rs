@@ -1,6 +1,7 @@
 //! What a person sets about the picture.
 
 use crate::choices::Normalize;
+use crate::scene::Emission;
 
 /// What a person sets about the picture; the field does not depend on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,8 +17,8 @@ pub struct Settings {
     pub light_gain: [f64; 3],
     /// The luminance from which on a pixel is a light.
     pub threshold: f64,
-    /// Weights of R, G and B in luminance.
-    pub luminance: [f64; 3],
+    /// How a pixel of the photo gives light.
+    pub emission: Emission,
 }
 
 impl Default for Settings {
@@ -28,7 +29,7 @@ impl Default for Settings {
             constant: [0.0; 3],
             light_gain: [1.0; 3],
             threshold: f64::INFINITY,
-            luminance: [0.2126, 0.7152, 0.0722],
+            emission: [0.2126, 0.7152, 0.0722].into(),
         }
     }
 }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::report::{Figure, Report, Table};
 use crate::gpu::Info;
-use crate::page::{cell, drawn_on, escaped, head, pairs};
+use crate::page::{cell, drawn_on, escaped, head, pairs, shown};
 
 /// What tells a page of this program's from others.
 pub(super) const GENERATOR: &str = r#"<meta name="generator" content="vglare rex">"#;
@@ -28,7 +28,7 @@ impl Chapter {
     pub fn new(report: &Report, files: &Files) -> Self {
         let mut body = String::new();
         for paragraph in &report.about {
-            let _ = writeln!(body, "<p>{}</p>", escaped(paragraph));
+            let _ = writeln!(body, "<p>{}</p>", shown(paragraph));
         }
         if !report.measures.is_empty() {
             body.push_str(&pairs("Measured", &report.measures));
@@ -80,12 +80,12 @@ pub(super) fn page(chapters: &[Chapter], device: Option<&Info>) -> String {
 
 fn shown_figure(folder: &str, figure: &Figure, files: &[String]) -> String {
     let Some(picture) = files.first() else { return String::new() };
-    let [caption, width, height] =
-        [escaped(&figure.caption), figure.picture.width().to_string(), figure.picture.height().to_string()];
+    let (caption, described) = (shown(&figure.caption), escaped(&figure.caption));
+    let (width, height) = (figure.picture.width(), figure.picture.height());
     let links: Vec<String> = files.iter().map(|file| link(folder, file)).collect();
     format!(
         "<figure id=\"{folder}-{stem}\"><img src=\"{folder}/{picture}\" width=\"{width}\" height=\"{height}\" \
-         loading=\"lazy\" alt=\"{caption}\">\n<figcaption>{caption} {links}</figcaption></figure>\n",
+         loading=\"lazy\" alt=\"{described}\">\n<figcaption>{caption} {links}</figcaption></figure>\n",
         stem = figure.stem,
         links = links.join(" · "),
     )
@@ -93,8 +93,8 @@ fn shown_figure(folder: &str, figure: &Figure, files: &[String]) -> String {
 
 fn shown_table(folder: &str, table: &Table, file: &str) -> String {
     let mut text = String::from("<div class=\"wide\"><table>\n");
-    let _ = writeln!(text, "<caption>{} {}</caption>", escaped(&table.caption), link(folder, file));
-    let header: String = table.header.iter().map(|name| format!("<th scope=\"col\">{}</th>", escaped(name))).collect();
+    let _ = writeln!(text, "<caption>{} {}</caption>", shown(&table.caption), link(folder, file));
+    let header: String = table.header.iter().map(|name| format!("<th scope=\"col\">{}</th>", shown(name))).collect();
     let _ = writeln!(text, "<tr>{header}</tr>");
     for row in &table.rows {
         let cells: String = row.iter().map(|value| cell(value)).collect();

@@ -14,10 +14,12 @@
 //! mix = "add"                 # or "energy"
 //! normalize = "none"          # or "clamp", "minmax"
 //!
-//! [find]                      # lights in the photo, where the file lists none
+//! [find]                      # lights in the photo, where the file lists none or adds to them
 //! threshold = 20.0
 //! merge = 0.02
 //! max_lights = 64
+//! firefly_limit = 5000        # a pixel that outshines its neighbours by more is no light; 0 takes it
+//! add = false                 # whether the file's lights are added to the photo's
 //!
 //! [accuracy]
 //! tolerance = 1e-3            # between 0 and 1; or budget = 20.0, in milliseconds

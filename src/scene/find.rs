@@ -10,6 +10,8 @@ use std::collections::HashMap;
 use glam::{DVec2, I64Vec2};
 
 use super::Light;
+use super::emission::Emission;
+use super::lit::Lit;
 use super::regions::{Moments, regions};
 use super::threshold::{self, Rule};
 use crate::frame::Frame;
@@ -25,12 +27,19 @@ pub struct FindOptions {
     pub merge: f64,
     /// At most so many lights are kept, the brightest.
     pub max_lights: usize,
+    /// A single pixel that is more than so many times as bright as the brightest of its neighbours is a firefly: no light,
+    /// and nothing that the threshold goes by. At least 1; 0 takes every pixel as it is.
+    pub firefly_limit: f64,
 }
 
 impl Default for FindOptions {
-    /// 0.02, the width of a thumb at arm's length in a normal lens, and 64 lights.
+    /// 0.02, the width of a thumb at arm's length in a normal lens, 64 lights, and twelve stops.
+    ///
+    /// Of five panoramas and nine photos, each box-filtered to ten sizes, down to the sun in one pixel of 32 × 16, no
+    /// pixel outshines its neighbours by more than 180; of those that a decoder had sampled without a filter, one by 900
+    /// and one by 7800.
     fn default() -> Self {
-        Self { threshold: None, merge: 0.02, max_lights: 64 }
+        Self { threshold: None, merge: 0.02, max_lights: 64, firefly_limit: 5000.0 }
     }
 }
 
@@ -51,6 +60,12 @@ pub struct Found {
     pub dropped: usize,
     /// Their share of the flux of all regions, 0 to 1, weighted by luminance.
     pub dropped_share: f64,
+    /// Pixels at or above the threshold that are no light, because they outshine their neighbours.
+    pub fireflies: usize,
+    /// Column and row of the first of them in the picture.
+    pub first_firefly: Option<(i32, i32)>,
+    /// The largest luminance that a pixel gives, fireflies left out; 0 for a black photo.
+    pub peak: f64,
 }
 
 impl Found {
@@ -62,23 +77,21 @@ impl Found {
 
 /// Finds the lights among the stored pixels of a photo, brightest first.
 ///
-/// `weights` are those of the photo's linear R, G and B in luminance. A pixel with a channel that is not finite is never
-/// light, and a negative channel counts as 0. Alpha is not looked at: a flame may well have none.
+/// `emission` says how a pixel gives light; the weights of linear R, G and B in luminance alone say that alpha is not
+/// looked at. A pixel with a channel that is not finite is never light, and a negative channel counts as 0.
 ///
 /// # Panics
 ///
 /// If there are not as many pixels as `frame.window` holds.
-pub fn find(pixels: &[[f32; 4]], frame: &Frame, weights: [f64; 3], options: &FindOptions) -> Found {
+pub fn find(pixels: &[[f32; 4]], frame: &Frame, emission: impl Into<Emission>, options: &FindOptions) -> Found {
     assert_eq!(pixels.len(), frame.window.pixels(), "the pixels do not fill the frame's window");
-    let weights = weights.map(|w| w as f32);
+    let lit = Lit::new(pixels, frame.window.width as usize, emission.into(), options.firefly_limit);
     let (threshold, rule) = match options.threshold {
         Some(given) => (given, Rule::Given),
-        None => threshold::automatic(pixels, weights),
+        None => threshold::automatic(&lit),
     };
-    let mut found = match frame.window.width {
-        0 => Vec::new(),
-        width => regions(pixels, width as usize, weights, threshold as f32),
-    };
+    let mut found = regions(&lit, threshold as f32);
+    let survey = lit.survey(threshold as f32);
     let regions = found.len();
     let total = found.iter().map(|region| region.weight).sum::<f64>().max(f64::MIN_POSITIVE);
     found.sort_by(brightest_first);
@@ -96,6 +109,9 @@ pub fn find(pixels: &[[f32; 4]], frame: &Frame, weights: [f64; 3], options: &Fin
         regions,
         dropped: dropped.len(),
         dropped_share: dropped.iter().fold(0.0, |sum, region| sum + region.weight / total),
+        fireflies: survey.fireflies,
+        first_firefly: survey.first.map(|(column, row)| (frame.window.x + column as i32, frame.window.y + row as i32)),
+        peak: survey.peak.into(),
     }
 }
 

@@ -5,9 +5,11 @@ use glam::DVec2;
 use crate::series::Bell;
 
 mod bells;
+mod emission;
 mod file;
 mod find;
 mod lens;
+mod lit;
 mod number;
 pub mod presets;
 mod regions;
@@ -16,6 +18,7 @@ mod tables;
 pub mod threshold;
 mod write;
 
+pub use emission::Emission;
 pub use file::{SceneFile, read_lens, read_lights, read_scene};
 pub use find::{FindOptions, Found, find};
 pub use lens::{Lens, ghosts};

@@ -30,6 +30,7 @@ pub(super) struct IsFinite;
 pub(super) struct IsNotNegative;
 pub(super) struct IsPositive;
 pub(super) struct IsFraction;
+pub(super) struct IsFactor;
 
 impl Allowed for IsFinite {
     const EXPECTED: &'static str = "a finite number";
@@ -56,6 +57,13 @@ impl Allowed for IsFraction {
     const EXPECTED: &'static str = "a number between 0 and 1";
     fn holds(x: f64) -> bool {
         x > 0.0 && x < 1.0
+    }
+}
+
+impl Allowed for IsFactor {
+    const EXPECTED: &'static str = "0, or a finite number of at least 1";
+    fn holds(x: f64) -> bool {
+        x == 0.0 || (IsFinite::holds(x) && x >= 1.0)
     }
 }
 

@@ -5,15 +5,18 @@
 //! memory goes with the number of regions and not with that of pixels. Bands of rows are labelled side by side and
 //! stitched afterwards; their height depends on the picture alone, so the result does not depend on the threads.
 
+use std::ops::Range;
+
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::threshold::luminance;
+use super::emission::Emission;
+use super::lit::Lit;
 
 /// Sums over pixels of light. Positions are columns and rows of the stored window, areas are pixels.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Moments {
-    /// Sum of radiance, RGB.
+    /// Sum of radiance, RGB, as much as its pixel gives of it.
     pub flux: [f64; 3],
     /// Sum of luminance.
     pub weight: f64,
@@ -43,14 +46,15 @@ impl Moments {
     }
 
     /// Of neighbouring pixels in a row, the first of which is in column `i`.
-    fn of_run(pixels: &[[f32; 4]], weights: [f32; 3], i: usize, j: usize) -> Self {
+    fn of_run(pixels: &[[f32; 4]], emission: Emission, i: usize, j: usize) -> Self {
         let (mut flux, mut sums) = ([0.0; 3], [0.0; 3]);
         for (k, pixel) in pixels.iter().enumerate() {
-            let (l, k) = (f64::from(luminance(pixel, weights)), k as f64);
+            let (l, k) = (f64::from(emission.luminance(pixel)), k as f64);
+            let share = f64::from(emission.share(pixel));
             sums[0] += l;
             sums[1] += l * k;
             sums[2] += l * k * k;
-            flux.iter_mut().zip(pixel).for_each(|(sum, &c)| *sum += f64::from(c.max(0.0)));
+            flux.iter_mut().zip(pixel).for_each(|(sum, &c)| *sum += share * f64::from(c.max(0.0)));
         }
         let offset = sums[1] / sums[0];
         let mean = DVec2::new(i as f64 + offset, j as f64);
@@ -75,15 +79,9 @@ impl Run {
 
 /// Every region of pixels at or above `threshold`, in the order of their first pixels.
 ///
-/// Black pixels are in none, whatever the threshold. `width` is that of a row, not 0.
-pub(super) fn regions(pixels: &[[f32; 4]], width: usize, weights: [f32; 3], threshold: f32) -> Vec<Moments> {
-    let rows = ((1 << 17) / width).max(1);
-    let bands: Vec<Band> = pixels
-        .par_chunks(rows * width)
-        .enumerate()
-        .map(|(band, pixels)| Band::new(pixels, width, band * rows, weights, threshold))
-        .collect();
-    stitch(bands)
+/// Black pixels are in none, whatever the threshold, and neither are fireflies.
+pub(super) fn regions(lit: &Lit<'_>, threshold: f32) -> Vec<Moments> {
+    stitch(lit.bands().map(|rows| Band::new(lit, rows, threshold)).collect())
 }
 
 /// Some rows of the picture: their regions, and the runs of the first and the last row.
@@ -94,18 +92,19 @@ struct Band {
 }
 
 impl Band {
-    fn new(pixels: &[[f32; 4]], width: usize, top: usize, weights: [f32; 3], threshold: f32) -> Self {
+    fn new(lit: &Lit<'_>, rows: Range<usize>, threshold: f32) -> Self {
         let mut regions = Regions::default();
         let (mut first, mut above, mut runs) = (Vec::new(), Vec::new(), Vec::new());
-        for (j, row) in pixels.chunks_exact(width).enumerate() {
+        for j in rows.clone() {
+            let row = &lit.pixels()[j * lit.width()..][..lit.width()];
             runs.clear();
             let mut touched = 0;
-            each_run(row, weights, threshold, |start, end| {
-                let moments = Moments::of_run(&row[start..end], weights, start, top + j);
+            each_run(lit, j, threshold, |start, end| {
+                let moments = Moments::of_run(&row[start..end], lit.emission(), start, j);
                 let run = Run { start: start as u32, end: end as u32, region: 0 };
                 runs.push(Run { region: regions.add(&run, &moments, &above, &mut touched), ..run });
             });
-            if j == 0 {
+            if j == rows.start {
                 first = runs.clone();
             }
             std::mem::swap(&mut above, &mut runs);
@@ -115,16 +114,17 @@ impl Band {
 }
 
 /// Calls `found(start, end)` for each run of light in a row, from the left.
-fn each_run(row: &[[f32; 4]], weights: [f32; 3], threshold: f32, mut found: impl FnMut(usize, usize)) {
-    let is_light = |pixel: &[f32; 4]| {
-        let l = luminance(pixel, weights);
-        l >= threshold && l > 0.0
-    };
-    let mut end = 0;
-    while let Some(gap) = row[end..].iter().position(is_light) {
-        let start = end + gap;
-        end = row[start..].iter().position(|pixel| !is_light(pixel)).map_or(row.len(), |length| start + length);
-        found(start, end);
+fn each_run(lit: &Lit<'_>, row: usize, threshold: f32, mut found: impl FnMut(usize, usize)) {
+    let mut start = None;
+    lit.each(row, |column, luminance| {
+        if luminance >= threshold && luminance > 0.0 {
+            start.get_or_insert(column);
+        } else if let Some(start) = start.take() {
+            found(start, column);
+        }
+    });
+    if let Some(start) = start {
+        found(start, lit.width());
     }
 }
 
@@ -222,18 +222,22 @@ fn stitch(bands: Vec<Band>) -> Vec<Moments> {
 mod tests {
     use super::*;
 
-    const WEIGHTS: [f32; 3] = [0.25, 0.5, 0.25];
+    const EMISSION: Emission = Emission { weights: [0.25, 0.5, 0.25], straight: false };
+
+    fn regions(pixels: &[[f32; 4]], width: usize, threshold: f32) -> Vec<Moments> {
+        super::regions(&Lit::new(pixels, width, EMISSION, 0.0), threshold)
+    }
 
     /// Regions of a picture drawn with digits, each the radiance of its pixel.
     fn drawn(rows: &[&str]) -> Vec<Moments> {
         let digit = |c: char| f32::from(c.to_digit(10).unwrap_or(0) as u8);
         let pixels: Vec<_> = rows.iter().flat_map(|row| row.chars().map(|c| [digit(c); 4])).collect();
-        regions(&pixels, rows[0].len(), WEIGHTS, 1.0)
+        regions(&pixels, rows[0].len(), 1.0)
     }
 
     /// The definition: flood every region from its first pixel.
     fn flooded(pixels: &[[f32; 4]], width: usize, threshold: f32) -> Vec<Moments> {
-        let mut free: Vec<bool> = pixels.iter().map(|p| luminance(p, WEIGHTS) >= threshold).collect();
+        let mut free: Vec<bool> = pixels.iter().map(|p| EMISSION.luminance(p) >= threshold).collect();
         let height = pixels.len() / width;
         let mut out = Vec::new();
         for first in 0..pixels.len() {
@@ -243,7 +247,7 @@ mod tests {
                     continue;
                 }
                 let (i, j) = (p % width, p / width);
-                moments.absorb(&Moments::of_run(&pixels[p..=p], WEIGHTS, i, j));
+                moments.absorb(&Moments::of_run(&pixels[p..=p], EMISSION, i, j));
                 for y in j.saturating_sub(1)..(j + 2).min(height) {
                     queue.extend((i.saturating_sub(1)..(i + 2).min(width)).map(|x| y * width + x));
                 }
@@ -290,8 +294,7 @@ mod tests {
         for (width, height, threshold) in [(61, 47, 0.6), (60_000, 5, 0.62), (1, 300, 0.5), (300, 1, 0.5)] {
             let pixels: Vec<_> = (0..width * height).map(|_| [random(), random(), random(), 1.0]).collect();
             let key = |m: &Moments| (m.mean.y.to_bits(), m.mean.x.to_bits(), m.weight.to_bits());
-            let (mut fast, mut slow) =
-                (regions(&pixels, width, WEIGHTS, threshold), flooded(&pixels, width, threshold));
+            let (mut fast, mut slow) = (regions(&pixels, width, threshold), flooded(&pixels, width, threshold));
             assert_eq!(fast.len(), slow.len());
             fast.sort_by(|a, b| a.weight.total_cmp(&b.weight));
             slow.sort_by(|a, b| a.weight.total_cmp(&b.weight));

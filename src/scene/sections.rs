@@ -5,7 +5,7 @@ use toml::Spanned;
 
 use super::FindOptions;
 use super::bells::Fault;
-use super::number::{Allowed, IsFraction, IsNotNegative, IsPositive, NotNegative, Number, plain};
+use super::number::{Allowed, IsFactor, IsFraction, IsNotNegative, IsPositive, NotNegative, Number, plain};
 use crate::choices::{Evaluator, Mix, Normalize};
 
 /// `[look]`; what is `None` is left to the command line and its defaults.
@@ -42,6 +42,13 @@ pub struct FindSection {
     /// Most lights.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_lights: Option<usize>,
+    /// How many times as bright as its brightest neighbour a single pixel may be, and still is light: at least 1, or 0 for
+    /// whatever it likes.
+    #[serde(default, deserialize_with = "number::<_, IsFactor>", skip_serializing_if = "Option::is_none")]
+    pub firefly_limit: Option<f64>,
+    /// Whether the file's lights are added to those of the photo, instead of taking their place.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub add: bool,
 }
 
 /// `[accuracy]`; period and degree of the series stand at the top of the file.
@@ -124,6 +131,7 @@ impl FindSection {
             threshold: self.threshold,
             merge: self.merge.unwrap_or(default.merge),
             max_lights: self.max_lights.unwrap_or(default.max_lights),
+            firefly_limit: self.firefly_limit.unwrap_or(default.firefly_limit),
         }
     }
 }

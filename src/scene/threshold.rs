@@ -13,10 +13,16 @@
 //! A photo of short range, whose brightest luminance is less than [`SHORT_RANGE`] times its mean, and which reaches that
 //! luminance with a patch and not a pixel, has been clipped there: what is clipped is its light.
 //!
+//! Fireflies take no part: one that is a hundred times as bright as a lamp has the flux of all of it.
+//!
 //! \[O79\] N. Otsu, "A Threshold Selection Method from Gray-Level Histograms", IEEE Trans. SMC 9(1), 1979.
+
+use std::ops::Range;
 
 use rayon::prelude::*;
 use serde::Serialize;
+
+use super::lit::Lit;
 
 /// The automatic threshold is at least this many times the mean luminance.
 pub const FLOOR: f64 = 4.0;
@@ -45,29 +51,30 @@ pub enum Rule {
     Clipped,
 }
 
-/// Linear luminance of a pixel, with negative channels as 0; 0 for a pixel with a channel that is not finite.
-#[inline]
-pub(super) fn luminance(&[r, g, b, _]: &[f32; 4], weights: [f32; 3]) -> f32 {
-    let sum = weights[0] * r.max(0.0) + weights[1] * g.max(0.0) + weights[2] * b.max(0.0);
-    let finite = r.is_finite() && g.is_finite() && b.is_finite();
-    if finite { sum.min(f32::MAX) } else { 0.0 }
-}
-
 /// The threshold for these pixels and the rule that chose it. Above the peak, and so without effect, where no pixel
 /// stands out; 0 where all of them are black.
-pub(super) fn automatic(pixels: &[[f32; 4]], weights: [f32; 3]) -> (f64, Rule) {
-    let histogram = Histogram::new(pixels, weights);
+pub(super) fn automatic(lit: &Lit<'_>) -> (f64, Rule) {
+    let histogram = Histogram::new(lit);
     let mean = histogram.mean();
     let peak = f64::from(f32::from_bits(histogram.peak));
     if peak < SHORT_RANGE * mean {
         let level = AT_PEAK * peak;
-        let count = pixels.par_iter().filter(|p| f64::from(luminance(p, weights)) >= level).count();
-        if CLIPPED.contains(&(count as f64 / pixels.len() as f64)) {
+        if CLIPPED.contains(&(reaching(lit, level) as f64 / lit.pixels().len() as f64)) {
             return (level, Rule::Clipped);
         }
     }
     let floor = FLOOR * mean;
     histogram.split(floor).map_or((floor, Rule::Mean), |split| (split, Rule::Split))
+}
+
+/// How many pixels have at least a luminance, fireflies left out.
+fn reaching(lit: &Lit<'_>, level: f64) -> usize {
+    let of_row = |row| {
+        let mut count = 0;
+        lit.each(row, |_, luminance| count += usize::from(f64::from(luminance) >= level));
+        count
+    };
+    lit.bands().map(|rows| rows.map(of_row).sum::<usize>()).sum()
 }
 
 /// How many pixels have which luminance, 16 bins to the octave. Counts are integers and do not depend on the order in
@@ -93,17 +100,18 @@ fn middle(k: usize) -> f64 {
 }
 
 impl Histogram {
-    fn new(pixels: &[[f32; 4]], weights: [f32; 3]) -> Self {
+    fn new(lit: &Lit<'_>) -> Self {
         let empty = || Self { counts: vec![0; BINS], peak: 0 };
-        let chunks = pixels.par_chunks(1 << 17);
-        chunks.fold(empty, |histogram, chunk| histogram.with(chunk, weights)).reduce(empty, Self::plus)
+        lit.bands().fold(empty, |histogram, rows| histogram.with(lit, rows)).reduce(empty, Self::plus)
     }
 
-    fn with(mut self, pixels: &[[f32; 4]], weights: [f32; 3]) -> Self {
-        for pixel in pixels {
-            let bits = luminance(pixel, weights).to_bits();
-            self.counts[(bits >> SHIFT) as usize] += 1;
-            self.peak = self.peak.max(bits);
+    fn with(mut self, lit: &Lit<'_>, rows: Range<usize>) -> Self {
+        for row in rows {
+            lit.each(row, |_, luminance| {
+                let bits = luminance.to_bits();
+                self.counts[(bits >> SHIFT) as usize] += 1;
+                self.peak = self.peak.max(bits);
+            });
         }
         self
     }
@@ -155,7 +163,10 @@ impl Histogram {
 mod tests {
     use super::*;
 
-    const REC709: [f32; 3] = [0.2126, 0.7152, 0.0722];
+    /// The threshold of pixels in any order, by all of them.
+    fn automatic(pixels: &[[f32; 4]]) -> (f64, Rule) {
+        super::automatic(&Lit::new(pixels, 1, [0.2126, 0.7152, 0.0722].into(), 0.0))
+    }
 
     fn grey(l: f32) -> [f32; 4] {
         [l, l, l, 1.0]
@@ -173,7 +184,7 @@ mod tests {
 
     #[test]
     fn a_small_lamp_in_a_dim_room_is_split_from_it() {
-        let (threshold, rule) = automatic(&mixture(100_000, 0.3, &[(0.001, 1000.0), (0.1, 0.9)]), REC709);
+        let (threshold, rule) = automatic(&mixture(100_000, 0.3, &[(0.001, 1000.0), (0.1, 0.9)]));
         assert_eq!(rule, Rule::Split);
         assert!((10.0..100.0).contains(&threshold), "{threshold}");
     }
@@ -181,7 +192,7 @@ mod tests {
     #[test]
     fn a_bright_sky_is_no_light() {
         for share in [0.3, 0.5, 0.75] {
-            let (threshold, rule) = automatic(&mixture(100_000, 0.2, &[(share, 3.0)]), REC709);
+            let (threshold, rule) = automatic(&mixture(100_000, 0.2, &[(share, 3.0)]));
             assert_eq!(rule, Rule::Mean);
             assert!(threshold > 3.0, "a sky over {share} of the picture, {threshold}");
         }
@@ -189,45 +200,36 @@ mod tests {
 
     #[test]
     fn a_sun_in_a_bright_sky_is_one() {
-        let (threshold, _) = automatic(&mixture(100_000, 0.2, &[(0.5, 3.0), (0.0003, 2000.0)]), REC709);
+        let (threshold, _) = automatic(&mixture(100_000, 0.2, &[(0.5, 3.0), (0.0003, 2000.0)]));
         assert!((6.0..1000.0).contains(&threshold), "{threshold}");
     }
 
     #[test]
     fn clipped_highlights_of_a_display_referred_photo_are_lights() {
-        let (threshold, rule) = automatic(&mixture(100_000, 0.3, &[(0.2, 0.8), (0.02, 1.0)]), REC709);
+        let (threshold, rule) = automatic(&mixture(100_000, 0.3, &[(0.2, 0.8), (0.02, 1.0)]));
         assert_eq!((threshold, rule), (0.995, Rule::Clipped));
         // Also in a low key; a few hot pixels are no highlight, and a clipped half of the picture is none either.
-        assert_eq!(automatic(&mixture(100_000, 0.02, &[(0.01, 0.3), (0.002, 1.0)]), REC709).1, Rule::Clipped);
-        assert_ne!(automatic(&mixture(100_000, 0.2, &[(0.2, 0.5), (0.0001, 1.0)]), REC709).1, Rule::Clipped);
-        assert_eq!(automatic(&mixture(100_000, 0.3, &[(0.5, 1.0)]), REC709).1, Rule::Mean);
+        assert_eq!(automatic(&mixture(100_000, 0.02, &[(0.01, 0.3), (0.002, 1.0)])).1, Rule::Clipped);
+        assert_ne!(automatic(&mixture(100_000, 0.2, &[(0.2, 0.5), (0.0001, 1.0)])).1, Rule::Clipped);
+        assert_eq!(automatic(&mixture(100_000, 0.3, &[(0.5, 1.0)])).1, Rule::Mean);
     }
 
     #[test]
     fn nothing_stands_out_in_a_flat_picture() {
         for level in [0.01, 0.5, 1.0, 1e30] {
-            let (threshold, rule) = automatic(&vec![grey(level); 1000], REC709);
+            let (threshold, rule) = automatic(&vec![grey(level); 1000]);
             assert_eq!(rule, Rule::Mean);
             assert!(threshold > 3.0 * f64::from(level));
         }
-        assert_eq!(automatic(&[grey(0.0); 10], REC709).0, 0.0);
-        assert!(automatic(&[grey(7.0)], REC709).0 > 7.0);
-        assert_eq!(automatic(&[], REC709).0, 0.0);
+        assert_eq!(automatic(&[grey(0.0); 10]).0, 0.0);
+        assert!(automatic(&[grey(7.0)]).0 > 7.0);
+        assert_eq!(automatic(&[]).0, 0.0);
     }
 
     #[test]
     fn a_hot_pixel_does_not_hide_a_lamp() {
         let mut pixels = mixture(2_000_000, 0.3, &[(0.001, 1000.0)]);
         pixels[1_000_000] = grey(60_000.0);
-        assert!(automatic(&pixels, REC709).0 < 500.0);
-    }
-
-    #[test]
-    fn pixels_that_are_not_finite_have_no_luminance_and_negative_channels_count_as_0() {
-        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
-            assert_eq!(luminance(&[9.0, bad, 9.0, 1.0], REC709), 0.0);
-        }
-        assert_eq!(luminance(&[-5.0, 1.0, -5.0, f32::NAN], REC709), 0.7152);
-        assert_eq!(luminance(&[f32::MAX; 4], [0.5, 0.5, 0.5]), f32::MAX);
+        assert!(automatic(&pixels).0 < 500.0);
     }
 }

@@ -9,7 +9,7 @@ use super::looks::Look;
 use super::plots::Plot;
 use super::point::{Point, Sweep};
 use super::write::Files;
-use crate::page::{cell, drawn_on, escaped, head};
+use crate::page::{cell, drawn_on, escaped, head, shown, unbroken};
 
 /// What tells a page of these results from others.
 pub(super) const GENERATOR: &str = r#"<meta name="generator" content="vglare tradeoff">"#;
@@ -80,7 +80,7 @@ fn headline(results: &Results) -> String {
         Some((before, (value, after))) => format!("{before}<code>--tolerance {value}</code>:{after}"),
         None => sentence,
     };
-    format!("<p class=\"headline\">{marked}</p>\n")
+    format!("<p class=\"headline\">{}</p>\n", unbroken(&marked))
 }
 
 fn choices(results: &Results) -> String {
@@ -93,8 +93,7 @@ fn choices(results: &Results) -> String {
     for point in results.choices() {
         let asked = point.asked.map(exponent).unwrap_or_default();
         if let Some(reason) = &point.refused {
-            let _ =
-                writeln!(text, "<tr>{}<td colspan=\"10\" class=\"soft\">{}</td></tr>", cell(&asked), escaped(reason));
+            let _ = writeln!(text, "<tr>{}<td colspan=\"10\" class=\"soft\">{}</td></tr>", cell(&asked), shown(reason));
             continue;
         }
         let error = |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.1e}"));
@@ -169,16 +168,17 @@ fn setting(look: &Look) -> String {
 }
 
 fn picture(file: &str, caption: &str) -> String {
-    let caption = escaped(caption);
+    let caption = caption.trim_end_matches('.');
     format!(
-        "<figure><a href=\"{file}\"><img src=\"{file}\" loading=\"lazy\" alt=\"{caption}\"></a>\n\
-         <figcaption>{caption}.</figcaption></figure>\n",
-        caption = caption.trim_end_matches('.')
+        "<figure><a href=\"{file}\"><img src=\"{file}\" loading=\"lazy\" alt=\"{}\"></a>\n\
+         <figcaption>{}.</figcaption></figure>\n",
+        escaped(caption),
+        shown(caption)
     )
 }
 
 fn figure(Plot { stem, caption, chart }: &Plot, [png, svg, csv]: &[String; 3]) -> String {
-    let (title, caption, [width, height]) = (escaped(&chart.title), escaped(caption), chart.size);
+    let (title, caption, [width, height]) = (escaped(&chart.title), shown(caption), chart.size);
     format!(
         "<figure id=\"{stem}\"><img src=\"{png}\" width=\"{width}\" height=\"{height}\" alt=\"{title}\" \
          loading=\"lazy\">\n<figcaption>{caption} <a href=\"{svg}\">SVG</a> · <a href=\"{png}\">PNG</a> · \

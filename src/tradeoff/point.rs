@@ -100,7 +100,7 @@ impl Point {
 
     /// A request without a plan.
     pub(super) fn refused(sweep: Sweep, frame: Frame, ghosts: usize, asked: Option<f64>, reason: &Error) -> Self {
-        Self { refused: Some(reason.to_string()), ..Self::empty(sweep, frame, ghosts, asked) }
+        Self { refused: Some(reason.reason()), ..Self::empty(sweep, frame, ghosts, asked) }
     }
 
     fn empty(sweep: Sweep, frame: Frame, ghosts: usize, asked: Option<f64>) -> Self {

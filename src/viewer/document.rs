@@ -1,5 +1,6 @@
 //! A photo that is open: the pixels that are shown, its look, and how it is looked at.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -104,7 +105,7 @@ impl Document {
     }
 
     /// The lights, found or listed, muted ones too.
-    pub fn lights(&self) -> &[Light] {
+    pub fn lights(&self) -> Cow<'_, [Light]> {
         self.look.lights(&self.found.lights)
     }
 

@@ -291,7 +291,7 @@ impl Player {
             Place::Screen([x, y]) => Ok(pos2(*x, *y)),
             Place::Picture(position) => on_picture(DVec2::from_array(*position)),
             Place::Light(index) => {
-                let light = self.app.document().and_then(|document| document.lights().get(*index));
+                let light = self.app.document().and_then(|document| document.lights().get(*index).copied());
                 on_picture(light.ok_or_else(|| missing("such light"))?.position)
             }
             Place::Control(name, part) => {

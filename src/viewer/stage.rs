@@ -17,7 +17,7 @@ use crate::job::{self, Known};
 use crate::look::Gathered;
 use crate::plan::Plan;
 use crate::renderer::{Mask, Part, Renderer, Settings, View};
-use crate::scene::Goal;
+use crate::scene::{Emission, Goal};
 use crate::{Error, Result};
 
 /// The tolerance of a preview, unless the look's own is coarser: half a code of an 8-bit display is 2e-3 of white.
@@ -268,8 +268,13 @@ impl Stage {
     /// [`crate::Error::Gl`] where the driver refuses.
     pub fn mask(&mut self, document: &Document, placement: &Placement, screen: &Screen) -> Result<()> {
         let threshold = document.look.find.threshold.unwrap_or(document.found.threshold);
-        let weights = document.photo.luminance_weights();
-        let mask = Mask { threshold, weights, origin: placement.origin, pitch: placement.pitch };
+        let mask = Mask {
+            threshold,
+            firefly_limit: document.look.find.firefly_limit,
+            emission: Emission::of(&document.photo),
+            origin: placement.origin,
+            pitch: placement.pitch,
+        };
         self.renderer.mask(&mask, screen, placement.region)
     }
 

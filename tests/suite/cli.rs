@@ -3,12 +3,14 @@
 mod bad_input;
 mod calibrate;
 mod harmonics;
+mod lights;
 mod look;
 mod outputs;
 mod plan;
 mod refusals;
 mod rex;
 mod sequence;
+mod tables;
 mod tradeoff;
 mod view;
 

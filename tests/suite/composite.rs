@@ -3,7 +3,7 @@
 use vglare::frame::Frame;
 use vglare::plan::{Evaluator, Plan, Request, plan};
 use vglare::renderer::{Normalize, Renderer, Settings};
-use vglare::scene::Ghost;
+use vglare::scene::{Emission, Ghost};
 
 use crate::support::{glare, on_each_backend, plan_with, scenes};
 
@@ -139,7 +139,8 @@ fn the_glare_is_linear_in_the_strength() {
 #[test]
 fn light_is_taken_only_where_the_photo_is_bright_enough() {
     let gain = [0.5, 0.25, 0.75];
-    let settings = Settings { light_gain: gain, threshold: 2.0, luminance: [0.25, 0.5, 0.25], ..Settings::default() };
+    let settings =
+        Settings { light_gain: gain, threshold: 2.0, emission: [0.25, 0.5, 0.25].into(), ..Settings::default() };
     // At the threshold, just below it, above it, far below, and infinite: what has no finite light keeps it.
     let below = f32::from_bits(2f32.to_bits() - 1);
     let colours =
@@ -157,6 +158,26 @@ fn light_is_taken_only_where_the_photo_is_bright_enough() {
                 let factor = if taken { gain[colour] as f32 } else { 1.0 };
                 assert_eq!(after[colour], before[colour] * factor, "{before:?} became {after:?}");
             }
+        }
+    });
+}
+
+#[test]
+fn light_is_taken_by_what_a_pixel_gives_of_its_colour() {
+    // Straight alpha gives its share, and a negative weight makes blue darker than black.
+    let emission = Emission { weights: [0.5, 0.75, -0.25], straight: true };
+    let settings = Settings { light_gain: [0.5; 3], threshold: 1.0, emission, ..Settings::default() };
+    let hidden = [0.0, 0.125, 0.5, f32::NAN].map(|alpha| [4.0, 4.0, 0.0, alpha]);
+    let photo = [hidden[0], hidden[1], hidden[2], hidden[3], [0.0, 0.0, 90.0, 1.0], [2.0, 2.0, -90.0, 7.0]];
+    let taken = [false, false, true, false, false, true];
+    let frame = Frame::full(6, 1);
+    on_each_backend(|_, renderer| {
+        renderer.set_scene(&[], &plan_with(&[], frame, 1e-2, Evaluator::Rows)).unwrap();
+        let mut picture = photo;
+        renderer.composite(frame, &mut picture, &settings).unwrap();
+        for ((before, after), taken) in photo.iter().zip(&picture).zip(taken) {
+            let factor = if taken { 0.5 } else { 1.0 };
+            assert_eq!(after[..3], [0, 1, 2].map(|c| before[c] * factor), "{before:?} became {after:?}");
         }
     });
 }

@@ -173,8 +173,10 @@ fn benchmark_has_the_layout_of_the_notes() {
     assert_eq!(column(&report, "benchmark", "K"), ["5", "5", "1000", "1000"]);
     let cases = ["parametric", "non-parametric"];
     assert_eq!(column(&report, "benchmark", "case"), [cases, cases].concat());
-    assert_eq!(column(&report, "benchmark", "notes: draw_glare"), ["0.080", "0.014", "0.082", "0.311"]);
-    assert_eq!(column(&report, "benchmark", "notes: GL"), ["0.207", "0.161", "0.207", "0.442"]);
+    assert_eq!(column(&report, "benchmark", "notes: draw_glare, ms"), ["0.080", "0.014", "0.082", "0.311"]);
+    assert_eq!(column(&report, "benchmark", "notes: mean GL time, ms"), ["0.207", "0.161", "0.207", "0.442"]);
+    let noted = ["least", "most"].map(|end| column(&report, "benchmark", &format!("notes: FPS, {end}")));
+    assert_eq!(noted, [["4000", "5000", "4000", "2000"], ["5000", "6000", "5000", "2000"]]);
     for header in ["FPS", "draw_glare, ms", "mean GL time, ms"] {
         let times = column(&report, "benchmark", header);
         assert!(times.iter().all(|time| time.parse::<f64>().unwrap() > 0.0), "{header}: {times:?}");

@@ -5,7 +5,8 @@ use vglare::frame::Frame;
 use vglare::gpu::{Region, Screen};
 use vglare::photo::ToneMap;
 use vglare::plan::{Request, plan};
-use vglare::renderer::{Normalize, Part, Renderer, Settings, View};
+use vglare::renderer::{Mask, Normalize, Part, Renderer, Settings, View};
+use vglare::scene::{Emission, FindOptions, find};
 
 use crate::support::{bits, on_each_backend, scenes};
 
@@ -233,6 +234,48 @@ fn a_coarse_field_lies_where_the_fine_one_does() {
             let spread =
                 fine.iter().map(|pixel| pixel[0]).max().unwrap() - fine.iter().map(|pixel| pixel[0]).min().unwrap();
             assert!(worst <= 6 && spread > 60, "pitch {pitch}: {worst} codes apart of {spread}");
+        }
+    });
+}
+
+#[test]
+fn the_mask_marks_what_the_search_takes_for_light() {
+    // A lamp of two pixels, a firefly, a pixel that its alpha hides, one of negative luminance, and one not finite.
+    let mut photo = vec![[0.2, 0.2, 0.2, 1.0]; 9 * 5];
+    for (index, pixel) in [
+        (10, [80.0, 80.0, 80.0, 1.0]),
+        (11, [60.0, 60.0, 60.0, 1.0]),
+        (14, [9e4, 9e4, 9e4, 1.0]),
+        (16, [80.0, 80.0, 80.0, 0.01]),
+        (17, [70.0, 70.0, 70.0, 0.01]),
+        (30, [0.0, 0.0, 500.0, 1.0]),
+        (32, [f32::INFINITY, 80.0, 80.0, 1.0]),
+        (34, [f32::NAN, 80.0, 80.0, 1.0]),
+    ] {
+        photo[index] = pixel;
+    }
+    let frame = Frame::full(9, 5);
+    let marked = |renderer: &mut Renderer, emission, firefly_limit| -> Vec<usize> {
+        renderer.load(frame, &photo).unwrap();
+        let screen = Screen::hidden(renderer.device(), [9, 5]).unwrap();
+        screen.clear([0.0; 3]);
+        let mask = Mask { threshold: 2.0, firefly_limit, emission, origin: DVec2::ZERO, pitch: 1.0 };
+        renderer.mask(&mask, &screen, screen.whole()).unwrap();
+        screen.read().iter().enumerate().filter(|(_, pixel)| pixel[0] > 0).map(|(index, _)| index).collect()
+    };
+    let weights = [0.3, 0.9, -0.2];
+    let premultiplied: Emission = weights.into();
+    let straight = Emission { straight: true, ..premultiplied };
+    on_each_backend(|_, renderer| {
+        for (emission, limit, expected) in [
+            (premultiplied, 5000.0, &[10, 11, 16, 17][..]),
+            (premultiplied, 0.0, &[10, 11, 14, 16, 17]),
+            (straight, 5000.0, &[10, 11]),
+        ] {
+            assert_eq!(marked(renderer, emission, limit), expected, "{emission:?} {limit}");
+            let options = FindOptions { threshold: Some(2.0), firefly_limit: limit, ..FindOptions::default() };
+            let found = find(&photo, &frame, emission, &options);
+            assert_eq!(found.fireflies, usize::from(limit > 0.0));
         }
     });
 }

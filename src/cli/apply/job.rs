@@ -58,6 +58,8 @@ impl<'a> Job<'a> {
         let (args, paths, photo) = (self.args, self.paths, &self.work.photo);
         let glare = self.work.glare.take();
         self.work.warnings.extend(photo::lost(&paths.output, photo, &picture_options(args)));
+        let largest = photo::largest_value(&paths.output, photo, &picture_options(args))?;
+        self.work.warnings.extend(self.work.beyond(largest));
         self.work.stages.time("write", || {
             if let (Some(path), Some(pixels)) = (&paths.glare, glare) {
                 photo::write(path, &photo.companion(pixels), &glare_options(args))?;

@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::job::Job;
 use crate::certificate::Certificate;
 use crate::choices::{Mix, Normalize};
+use crate::cli::lights::FirefliesJson;
 use crate::cli::plan::CostModelReport;
 use crate::gpu::{Info, PassTime};
 use crate::photo::BadKind;
@@ -78,6 +79,7 @@ struct SceneReport<'a> {
     threshold: Option<f64>,
     regions: Option<usize>,
     lights_dropped: Option<usize>,
+    fireflies: Option<FirefliesJson>,
     lights: Vec<LightReport>,
     ghosts: usize,
 }
@@ -168,6 +170,7 @@ fn scene_report<'a>(work: &'a crate::job::Job<'_>) -> SceneReport<'a> {
         threshold: found.map(|found| found.threshold),
         regions: found.map(|found| found.regions),
         lights_dropped: found.map(|found| found.dropped),
+        fireflies: found.map(FirefliesJson::from),
         lights: scene
             .lights
             .iter()

@@ -7,9 +7,10 @@ use super::report::kind_name;
 use crate::Result;
 use crate::certificate::Verify;
 use crate::cli::plan::text;
-use crate::cli::{stderr, stdout};
-use crate::look::Gathered;
+use crate::cli::{found, stderr, stdout};
+use crate::look::{Gathered, Look, LookLights};
 use crate::plan::Plan;
+use crate::scene::Found;
 
 /// Warnings to standard error; unless quiet, a short summary to standard output.
 pub fn print(job: &Job<'_>) -> Result<()> {
@@ -19,7 +20,7 @@ pub fn print(job: &Job<'_>) -> Result<()> {
     }
     stdout::print(|out| {
         about_photo(out, job)?;
-        about_scene(out, &job.work.scene)?;
+        about_scene(out, &job.work.scene, job.work.look)?;
         if let Some(planned) = &job.work.planned {
             about_plan(out, job, &planned.plan)?;
             planned.notes.iter().try_for_each(|note| writeln!(out, "note     {note}"))?;
@@ -55,24 +56,43 @@ fn about_photo(out: &mut dyn Write, job: &Job<'_>) -> io::Result<()> {
     Ok(())
 }
 
-fn about_scene(out: &mut dyn Write, scene: &Gathered) -> io::Result<()> {
-    if let (Some(found), Some(_)) = (&scene.found, &scene.lens) {
-        write!(out, "lights   {} at luminance {:.4} and above", scene.lights.len(), found.threshold)?;
-        match found.dropped {
-            0 => writeln!(out)?,
-            n => writeln!(out, "; {n} fainter ones left out, {:.1} % of the flux", 100.0 * found.dropped_share)?,
+/// What is light, and what it becomes.
+fn about_scene(out: &mut dyn Write, scene: &Gathered, look: &Look) -> io::Result<()> {
+    let muted = match scene.lights.iter().filter(|light| light.muted).count() {
+        0 => String::new(),
+        muted => format!(", {muted} of them muted"),
+    };
+    match (&scene.found, &look.lights) {
+        (Some(found), _) if look.finds() => {
+            about_found(out, found, look)?;
+            if let LookLights::FoundAnd(added) = &look.lights {
+                writeln!(out, "         {} more, as listed{muted}", added.len())?;
+            }
         }
-    } else if !scene.lights.is_empty() {
-        match scene.lights.iter().filter(|light| light.muted).count() {
-            0 => writeln!(out, "lights   {}, as listed", scene.lights.len())?,
-            muted => writeln!(out, "lights   {}, as listed, {muted} of them muted", scene.lights.len())?,
-        }
-    } else if scene.ghosts.is_empty() {
-        writeln!(out, "lights   none, so no glare")?;
+        _ if !scene.lights.is_empty() => writeln!(out, "lights   {}, as listed{muted}", scene.lights.len())?,
+        _ if scene.ghosts.is_empty() => writeln!(out, "lights   none are listed, so no glare")?,
+        _ => {}
     }
     match &scene.lens {
         Some(lens) => writeln!(out, "lens     {}: {} ghosts in all", lens.name, scene.ghosts.len()),
         None => writeln!(out, "ghosts   {}", scene.ghosts.len()),
+    }
+}
+
+/// What was found in the photo, and what was taken for no light.
+fn about_found(out: &mut dyn Write, found: &Found, look: &Look) -> io::Result<()> {
+    if found.regions == 0 {
+        writeln!(out, "lights   none, so no glare of the photo's own: {}", found::none(found))?;
+    } else {
+        write!(out, "lights   {} at luminance {:.4} and above", found.lights.len(), found.threshold)?;
+        match found.dropped {
+            0 => writeln!(out)?,
+            n => writeln!(out, "; {n} fainter ones left out, {:.1} % of the flux", 100.0 * found.dropped_share)?,
+        }
+    }
+    match found::fireflies(found, &look.find) {
+        Some(fireflies) => writeln!(out, "         {fireflies}"),
+        None => Ok(()),
     }
 }
 

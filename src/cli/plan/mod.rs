@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::accuracy::AccuracyArgs;
+use super::found;
 use super::lights::FindArgs;
 use super::reading::ReadArgs;
 use super::scene::SceneArgs;
@@ -16,7 +17,7 @@ use super::stdout;
 use crate::frame::Frame;
 use crate::gpu::{Device, Info};
 use crate::job::{self, Planned};
-use crate::look::Gathered;
+use crate::look::{Gathered, Look};
 use crate::plan::{CostModel, Plan};
 use crate::{Result, photo};
 
@@ -84,7 +85,7 @@ pub fn run(args: &Args) -> Result<()> {
     let planned = job::plan(&look.accuracy, &scene.ghosts, frame, info, args.accuracy.known(info))?;
     warn(&planned.warnings);
     let budget = look.accuracy.goal.budget();
-    let told = Told { photo: &args.photo, frame, scene: &scene, planned: &planned, info, budget };
+    let told = Told { photo: &args.photo, frame, look: &look, scene: &scene, planned: &planned, info, budget };
     stdout::print(|out| if args.json { told.json(out) } else { told.text(out) })
 }
 
@@ -92,6 +93,7 @@ pub fn run(args: &Args) -> Result<()> {
 struct Told<'a> {
     photo: &'a Path,
     frame: Frame,
+    look: &'a Look,
     scene: &'a Gathered,
     planned: &'a Planned,
     info: Option<&'a Info>,
@@ -108,6 +110,13 @@ impl Told<'_> {
                 writeln!(out, "scene    {lights} lights through {}: {ghosts} ghosts", lens.name)?;
             }
             None => writeln!(out, "scene    {} ghosts", self.scene.ghosts.len())?,
+        }
+        if let Some(found) = self.scene.found.as_ref().filter(|_| self.look.finds()) {
+            if found.regions == 0 {
+                writeln!(out, "         no lights: {}", found::none(found))?;
+            }
+            let fireflies = found::fireflies(found, &self.look.find);
+            fireflies.iter().try_for_each(|fireflies| writeln!(out, "         {fireflies}"))?;
         }
         let plan = &self.planned.plan;
         text::plan(out, plan)?;

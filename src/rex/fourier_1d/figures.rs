@@ -138,8 +138,3 @@ pub(in crate::rex) fn meant(sigma: f64) -> Result<Figure> {
                    what the notes looked for. At μ = 0 the two are nearly the same around 0. Its coefficients are exp(−κ) I_n(κ).";
     Figure::chart("meant", caption, &chart)
 }
-
-/// The period that the series has, for captions.
-pub(in crate::rex) fn period_name(rule: Rule) -> &'static str {
-    if rule.series_period() < PERIOD { "π" } else { "2π" }
-}

@@ -194,7 +194,7 @@ fn slips_table(common: &Common, compute: &mut impl FnMut(&Bells, Rule, u32) -> R
     let mut table = Table::new(
         "slips",
         "What each slip does to the sum before the move: the largest error over a period of 2π",
-        &["slip", "period", "N", "largest error", "N", "largest error"],
+        &["slip", "period in parts of π", "N", "largest error"],
     );
     let bells = common.bells(&common.mean)?;
     for (name, slips) in [
@@ -205,12 +205,11 @@ fn slips_table(common: &Common, compute: &mut impl FnMut(&Bells, Rule, u32) -> R
         ("all, as printed", Slips::ALL),
     ] {
         let rule = common.rule(slips);
-        let mut row = vec![name.to_owned(), figures::period_name(rule).to_owned()];
+        let period = if rule.series_period() < PERIOD { "1" } else { "2" };
         for degree in common.degrees() {
-            row.push(degree.to_string());
-            row.push(format!("{:.2e}", bells.error(&compute(&bells, rule, degree)?)));
+            let error = bells.error(&compute(&bells, rule, degree)?);
+            table.row([name.to_owned(), period.to_owned(), degree.to_string(), format!("{error:.2e}")]);
         }
-        table.row(row);
     }
     Ok(table)
 }

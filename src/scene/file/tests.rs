@@ -320,6 +320,7 @@ fn a_look_is_read_key_by_key() {
         "look.toml",
         "preset = \"zoom\"\naxis = [0.1, -2]\nlight = []\n[look]\nstrength = 0\nsize = 2\ntint = [1, 0, 2.5]\n\
          mix = \"energy\"\nnormalize = \"minmax\"\n[find]\nthreshold = 20\nmerge = 0\nmax_lights = 3\n\
+         firefly_limit = 0\nadd = true\n\
          [accuracy]\nbudget = 20\nallow_floor = true\nevaluator = \"rows\"\n",
     );
     let scene = read_scene(&path).unwrap();
@@ -333,14 +334,22 @@ fn a_look_is_read_key_by_key() {
         normalize: Some(Normalize::Minmax),
     };
     assert_eq!(scene.look, look);
-    assert_eq!(scene.find, FindSection { threshold: Some(20.0), merge: Some(0.0), max_lights: Some(3) });
+    let find = FindSection {
+        threshold: Some(20.0),
+        merge: Some(0.0),
+        max_lights: Some(3),
+        firefly_limit: Some(0.0),
+        add: true,
+    };
+    assert_eq!(scene.find, find);
     let (goal, evaluator) = (Some(Goal::Budget(20.0)), Some(Evaluator::Rows));
     assert_eq!(scene.accuracy, AccuracySection { goal, allow_floor: true, evaluator });
 }
 
 #[test]
 fn a_look_that_makes_no_sense_is_shown_in_its_line() {
-    let refusals: [(&str, &[&str]); 20] = [
+    let refusals: [(&str, &[&str]); 21] = [
+        ("[find]\nfirefly_limit = 0.5", &["line 2, column 17", "0, or a finite number of at least 1, found 0.5"]),
         ("[look]\nstrength = -1", &["line 2, column 12", "not negative, found -1", "look.strength"]),
         ("[look]\nsize = 0", &["line 2, column 8", "a positive finite number, found 0"]),
         ("[look]\ntint = [1, 1]", &["line 2, column 8", "an array of length 3"]),

@@ -5,7 +5,7 @@ const REC709: [f64; 3] = [0.2126, 0.7152, 0.0722];
 const BLACK: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 
 fn given(threshold: f64) -> FindOptions {
-    FindOptions { threshold: Some(threshold), merge: 0.0, ..FindOptions::default() }
+    FindOptions { threshold: Some(threshold), merge: 0.0, firefly_limit: 0.0, ..FindOptions::default() }
 }
 
 /// A black picture with these pixels.
@@ -121,7 +121,7 @@ fn what_is_not_finite_is_no_light_and_negatives_count_as_0() {
     let (mut pixels, frame) = picture(9, 3, &bad);
     assert_eq!(find(&pixels, &frame, REC709, &given(0.5)).lights, []);
     pixels[9 + 4] = [2.0, 4.0, -8.0, 0.0];
-    let found = find(&pixels, &frame, REC709, &FindOptions::default());
+    let found = find(&pixels, &frame, REC709, &FindOptions { firefly_limit: 0.0, ..FindOptions::default() });
     let area = frame.pixel_size().powi(2);
     assert_eq!((found.lights.len(), found.lights[0].flux), (1, [2.0 * area, 4.0 * area, 0.0]));
 }
@@ -142,11 +142,59 @@ fn pictures_without_light_have_none() {
 }
 
 #[test]
-fn a_hot_pixel_in_a_flat_picture_is_a_light() {
-    let mut pixels = vec![[0.3, 0.3, 0.3, 1.0]; 10_000];
-    pixels[5050] = [1e4, 1e4, 1e4, 1.0];
-    let found = find(&pixels, &Frame::full(100, 100), REC709, &FindOptions::default());
-    assert_eq!((found.lights.len(), found.rule), (1, Rule::Split));
+fn a_firefly_is_no_light_and_leaves_the_lamps_theirs() {
+    let (mut pixels, frame) = (vec![[0.3, 0.3, 0.3, 1.0]; 40_000], Frame::full(200, 200));
+    for p in [100, 101, 300, 301] {
+        pixels[p + 20_000] = [400.0, 350.0, 300.0, 1.0];
+    }
+    let clean = find(&pixels, &frame, REC709, &FindOptions::default());
+    assert_eq!((clean.lights.len(), clean.fireflies, clean.first_firefly), (1, 0, None));
+    pixels[5050] = [6e4, 6e4, 6e4, 1.0];
+    let found = find(&pixels, &frame, REC709, &FindOptions::default());
+    assert_eq!((found.fireflies, found.first_firefly), (1, Some((50, 25))));
+    assert_eq!((&found.lights, found.threshold), (&clean.lights, clean.threshold));
+    let all = find(&pixels, &frame, REC709, &FindOptions { firefly_limit: 0.0, ..FindOptions::default() });
+    assert_eq!((all.fireflies, all.lights[0].flux[0] > 1000.0 * frame.pixel_size().powi(2)), (0, true));
+    // Given a threshold, too, and where the window lies elsewhere.
+    let frame = Frame::full(400, 400).with_window(Window { x: -7, y: 100, width: 200, height: 200 });
+    let given = find(&pixels, &frame, REC709, &FindOptions { threshold: Some(10.0), ..FindOptions::default() });
+    assert_eq!((given.lights.len(), given.first_firefly), (1, Some((43, 125))));
+}
+
+#[test]
+fn the_sun_in_one_pixel_of_a_small_panorama_is_a_light() {
+    // What the 256 × 128 of a panorama at sunrise has there, each pixel a mean of 4 × 4: 180 times its neighbours.
+    let (mut pixels, frame) = (vec![[0.25, 0.25, 0.25, 1.0]; 256 * 128], Frame::full(256, 128));
+    for (offset, l) in [(0, 7596.0), (1, 42.0), (256, 40.0), (257, 30.0)] {
+        pixels[9000 + offset] = [l, l, l, 1.0];
+    }
+    let found = find(&pixels, &frame, REC709, &FindOptions::default());
+    assert_eq!((found.lights.len(), found.fireflies), (1, 0));
+}
+
+#[test]
+fn straight_alpha_takes_its_share_and_premultiplied_does_not() {
+    let (mut pixels, frame) =
+        picture(20, 10, &[(4, 4, [8.0; 3]), (5, 4, [8.0; 3]), (14, 4, [8.0; 3]), (15, 4, [8.0; 3])]);
+    let lamp = |alpha: f32, at: usize, pixels: &mut Vec<[f32; 4]>| {
+        (pixels[at][3], pixels[at + 1][3]) = (alpha, alpha);
+    };
+    lamp(0.0, 84, &mut pixels);
+    lamp(0.5, 94, &mut pixels);
+    let straight = Emission { straight: true, ..REC709.into() };
+    let found = find(&pixels, &frame, straight, &given(1.0));
+    let area = 2.0 * frame.pixel_size().powi(2);
+    assert_eq!((found.lights.len(), found.lights[0].flux, found.peak), (1, [4.0 * area; 3], 4.0));
+    assert_eq!(find(&pixels, &frame, straight, &given(4.5)).lights, []);
+    assert_eq!(find(&pixels, &frame, REC709, &given(1.0)).lights.len(), 2);
+}
+
+#[test]
+fn a_picture_darker_than_black_has_no_lights() {
+    let weights = [0.343_966, 0.728_166, -0.072_133];
+    let (pixels, frame) = (vec![[0.0, 0.001, 0.4, 1.0]; 200], Frame::full(20, 10));
+    let found = find(&pixels, &frame, weights, &FindOptions::default());
+    assert_eq!((found.lights.len(), found.threshold, found.peak), (0, 0.0, 0.0));
 }
 
 #[test]

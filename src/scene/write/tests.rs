@@ -88,6 +88,8 @@ fn scene(chance: &mut Chance) -> SceneFile {
             threshold: maybe(chance, positive),
             merge: maybe(chance, positive),
             max_lights: one_of(chance, &[None, Some(0), Some(7)]),
+            firefly_limit: one_of(chance, &[None, Some(0.0), Some(1.0), Some(5e3)]),
+            add: one_of(chance, &[true, false]),
         },
         accuracy: AccuracySection {
             goal: one_of(chance, &goals),

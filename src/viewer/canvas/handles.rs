@@ -103,7 +103,7 @@ fn light(ui: &mut Ui, painter: &Painter, document: &mut Document, placement: &Pl
 
 /// Marks at the ghosts of one light, and the line that they lie on.
 fn ghosts(painter: &Painter, document: &Document, placement: &Placement, selected: usize) {
-    let Some(light) = document.lights().get(selected) else { return };
+    let Some(light) = document.lights().get(selected).copied() else { return };
     let axis = document.look.axis;
     let place = |along: f64| placement.to_screen(document.place(axis + along * (light.position - axis)));
     let along = document.look.lens.ghosts().iter().map(|ghost| ghost.along);

@@ -24,7 +24,7 @@ pub fn work(old: &Look, new: &Look) -> Work {
         return Work::Lights;
     }
     match (&old.lights, &new.lights) {
-        (LookLights::Listed(_), LookLights::Found) => return Work::Lights,
+        (LookLights::Listed(_), LookLights::Found | LookLights::FoundAnd(_)) => return Work::Lights,
         (old, new) if old != new => return Work::Ghosts,
         _ => {}
     }
@@ -86,6 +86,9 @@ mod tests {
         assert_eq!(changed(&look, muted), Work::Ghosts);
         assert_eq!(changed(&look, |look| look.find.threshold = Some(2.0)), Work::Nothing);
         assert_eq!(changed(&look, |look| look.lights = LookLights::Found), Work::Lights);
+        assert_eq!(changed(&look, |look| look.lights = LookLights::FoundAnd(vec![light])), Work::Lights);
+        let found = Look { lights: LookLights::Found, ..look.clone() };
+        assert_eq!(changed(&found, |look| look.lights = LookLights::FoundAnd(vec![light])), Work::Ghosts);
         assert_eq!(changed(&look, |look| look.mix = Mix::Energy), Work::Lights);
         let energy = Look { mix: Mix::Energy, ..look };
         assert_eq!(changed(&energy, |look| look.find.threshold = Some(2.0)), Work::Lights);

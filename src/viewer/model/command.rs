@@ -48,10 +48,11 @@ fn options(look: &Look) -> Result<Vec<String>> {
         LookLens::Preset(_) | LookLens::Own(_) => {}
     }
     options.changed("--axis", look.axis, default.axis, pair);
-    let FindOptions { threshold, merge, max_lights } = look.find;
+    let FindOptions { threshold, merge, max_lights, firefly_limit } = look.find;
     options.given("--threshold", threshold, |x| x.to_string());
     options.changed("--merge", merge, default.find.merge, |x| x.to_string());
     options.changed("--max-lights", max_lights, default.find.max_lights, |n| n.to_string());
+    options.changed("--firefly-limit", firefly_limit, default.find.firefly_limit, |x| x.to_string());
     options.changed("--strength", look.strength, default.strength, |x| x.to_string());
     options.changed("--size", look.size, default.size, |x| x.to_string());
     options.changed("--tint", look.tint, default.tint, |[r, g, b]| format!("{r},{g},{b}"));

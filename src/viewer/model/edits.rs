@@ -13,12 +13,12 @@ const PERIOD: DVec2 = DVec2::splat(4.0);
 impl Look {
     /// The lights as a list to be edited, of which `found` are the photo's.
     pub fn lights_mut(&mut self, found: &[Light]) -> &mut Vec<Light> {
-        if self.lights == LookLights::Found {
-            self.lights = LookLights::Listed(found.to_vec());
+        if !matches!(self.lights, LookLights::Listed(_)) {
+            self.lights = LookLights::Listed(self.lights(found).into_owned());
         }
         match &mut self.lights {
             LookLights::Listed(lights) => lights,
-            LookLights::Found => unreachable!("they are listed by now"),
+            LookLights::Found | LookLights::FoundAnd(_) => unreachable!("they are listed by now"),
         }
     }
 
@@ -194,6 +194,14 @@ mod tests {
         assert_eq!(edited(|look| look.mute_light(&found(), 0, true)), [Light { muted: true, ..first }, second]);
         let flux = [0.5, 0.0, 3.0];
         assert_eq!(edited(|look| look.set_light_flux(&found(), 0, [0.5, -1.0, 3.0]))[0], Light { flux, ..first });
+    }
+
+    #[test]
+    fn an_edit_lists_what_was_added_to_the_found_ones_too() {
+        let mut look = Look { lights: LookLights::FoundAnd(vec![light(3.0)]), ..Look::default() };
+        look.mute_light(&found(), 2, true);
+        let [first, second] = found();
+        assert_eq!(look.lights, LookLights::Listed(vec![first, second, Light { muted: true, ..light(3.0) }]));
     }
 
     #[test]

@@ -34,6 +34,14 @@ const MOST: Number = Number {
     logarithmic: true,
 };
 
+const FIREFLIES: Number = Number {
+    name: "Firefly limit",
+    about: "A single pixel that outshines its neighbours by more is no light; 0 takes it as it is.",
+    unit: "times",
+    range: 0.0..=1e6,
+    logarithmic: true,
+};
+
 const PLACE: [Number; 2] = [place("Light x"), place("Light y")];
 
 const EXTENT: Number = Number {
@@ -76,7 +84,7 @@ pub fn show(ui: &mut Ui, document: &mut Document, _: &Stage) {
     ui.horizontal(|ui| {
         let about = "Adds a white light in the picture's centre, as bright as the faintest here";
         if button(ui, "Add a light", about) {
-            let light = another(document.lights());
+            let light = another(&document.lights());
             document.lights_mut().push(light);
             document.select(document.lights().len() - 1);
         }
@@ -90,6 +98,7 @@ pub fn show(ui: &mut Ui, document: &mut Document, _: &Stage) {
         match document.look.lights {
             LookLights::Found => "As they are found in the photo",
             LookLights::Listed(_) => "A list of the look's own",
+            LookLights::FoundAnd(_) => "As they are found in the photo, and the look's own",
         },
     );
     let mut gone = None;
@@ -162,6 +171,11 @@ fn find(ui: &mut Ui, document: &mut Document) {
     MOST.show(ui, &mut most, opened.max_lights as f64);
     if most != find.max_lights as f64 {
         find.max_lights = most.round() as usize;
+    }
+    FIREFLIES.show(ui, &mut find.firefly_limit, opened.firefly_limit);
+    if find.firefly_limit > 0.0 && find.firefly_limit < 1.0 {
+        // Below 1 nearly every pixel would be one; the way to 0 leads through there.
+        find.firefly_limit = find.firefly_limit.round();
     }
     let searching = if document.wants_search() { ", searching" } else { "" };
     let (regions, threshold) = (document.found.regions, control::brief(document.found.threshold));

@@ -5,6 +5,7 @@ use std::path::Path;
 use vglare::photo;
 
 use super::Workplace;
+use super::tables::tidy;
 
 /// Columns of a CSV by name; empty cells are NaN.
 struct Csv {
@@ -71,6 +72,7 @@ fn the_parabola_is_written_with_its_numbers_and_keeps_its_bound() {
         assert!((bound - e).abs() < 1e-12, "{n}: {bound} {e}");
         assert!((0.25 * bound..=*bound).contains(measured), "{n}: {measured} {bound}");
     }
+    tidy(&place.path("out"), 4);
     let page = std::fs::read_to_string(place.path("out/index.html")).unwrap();
     for part in
         ["parabola-1d/series.png", "parabola-1d/error.csv", "parabola-1d/stability.svg", "largest error at N = 8"]
@@ -91,9 +93,10 @@ fn the_periodic_gaussians_come_from_cpu_and_gpu_alike() {
             let folder = place.path(&out).join(name);
             files(&folder, "png").iter().for_each(|path| not_blank(path));
             let slips = Csv::read(&folder.join("slips.csv"));
-            let errors = slips.column("largest error");
+            let (degrees, errors) = (slips.column("N"), slips.column("largest error"));
+            assert_eq!(degrees, [10.0, 40.0].repeat(5));
             assert!((0.2..0.3).contains(&errors[0]), "{name}: the right series at N = 10 is off by {}", errors[0]);
-            assert!(errors[1..].iter().all(|error| *error > 0.5), "{name}: every slip is worse: {errors:?}");
+            assert!(errors[2..].iter().all(|error| *error > 0.5), "{name}: every slip is worse: {errors:?}");
             fields.push(photo::read(&folder.join("before.exr")).unwrap());
         }
     }
@@ -124,6 +127,7 @@ fn the_look_up_table_has_the_errors_of_its_size() {
     assert!(nearest[0] > 2.0 * nearest[2] && linear[0] > 100.0 * linear[2], "{nearest:?} {linear:?}");
     let updates = Csv::read(&folder.join("updates.csv"));
     assert_eq!(updates.rows.len(), 3 * 2 * 6);
+    tidy(&place.path("out"), 3);
     assert!(updates.column("least ms").iter().all(|ms| *ms > 0.0));
 }
 

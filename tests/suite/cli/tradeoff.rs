@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::Workplace;
+use super::tables::tidy;
 
 type Row = HashMap<String, String>;
 
@@ -81,6 +82,8 @@ fn the_page_names_files_that_are_there_and_nothing_from_elsewhere() {
     assert_eq!(json["ghosts"], 1);
     assert!(json["recommendation"]["tolerance"].as_f64().is_some_and(|tolerance| tolerance <= 0.1), "{json}");
     assert_eq!(json["phases"].as_array().map(Vec::len), Some(5));
+    tidy(&place.path("trade"), 6);
+    assert!(page.contains("<span class=\"unbroken\">") && page.contains(".unbroken { white-space: nowrap }"));
 }
 
 #[test]

@@ -1,0 +1,88 @@
+//! How much light a pixel of a photo gives: what everything goes by that tells light from the rest.
+
+use crate::photo::{Alpha, Photo};
+
+/// How the numbers of a pixel become luminance. `shared/emission.glsl` has the same.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Emission {
+    /// The weights of linear R, G and B in luminance (Y of CIE 1931). They add up to 1, and one may be negative where a
+    /// primary is no colour that can be seen, as the blue of ACES2065-1.
+    pub weights: [f32; 3],
+    /// Whether colour is not multiplied by alpha: then a pixel gives alpha's share of its colour, and nothing where alpha
+    /// is 0. Otherwise alpha is not looked at: a flame may well have none.
+    pub straight: bool,
+}
+
+impl Emission {
+    /// That of a photo.
+    pub fn of(photo: &Photo) -> Self {
+        Self { straight: photo.source.alpha == Alpha::Straight, ..photo.luminance_weights().into() }
+    }
+
+    /// Linear luminance of what a pixel gives, 0 or more and finite.
+    ///
+    /// Negative channels count as 0, and so does a sum that is negative by a negative weight; a pixel with a channel that
+    /// is not finite gives none.
+    #[inline]
+    pub fn luminance(&self, pixel: &[f32; 4]) -> f32 {
+        let [r, g, b, _] = *pixel;
+        let sum = self.weights[0] * r.max(0.0) + self.weights[1] * g.max(0.0) + self.weights[2] * b.max(0.0);
+        let finite = r.is_finite() && g.is_finite() && b.is_finite();
+        // No number, where weights of both signs made infinities of large channels, is not above 0.
+        if finite && sum > 0.0 { (sum * self.share(pixel)).min(f32::MAX) } else { 0.0 }
+    }
+
+    /// The share of a pixel's colour that it gives, 0 to 1.
+    #[inline]
+    pub fn share(&self, &[_, _, _, alpha]: &[f32; 4]) -> f32 {
+        match self.straight {
+            true if alpha.is_finite() => alpha.clamp(0.0, 1.0),
+            true => 0.0,
+            false => 1.0,
+        }
+    }
+}
+
+/// Of opaque or premultiplied pixels.
+impl From<[f64; 3]> for Emission {
+    fn from(weights: [f64; 3]) -> Self {
+        Self { weights: weights.map(|weight| weight as f32), straight: false }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const REC709: Emission = Emission { weights: [0.2126, 0.7152, 0.0722], straight: false };
+
+    #[test]
+    fn pixels_that_are_not_finite_have_no_luminance_and_negative_channels_count_as_0() {
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            assert_eq!(REC709.luminance(&[9.0, bad, 9.0, 1.0]), 0.0);
+        }
+        assert_eq!(REC709.luminance(&[-5.0, 1.0, -5.0, f32::NAN]), 0.7152);
+        let halves = Emission { weights: [0.5; 3], straight: false };
+        assert_eq!(halves.luminance(&[f32::MAX; 4]), f32::MAX);
+    }
+
+    #[test]
+    fn a_negative_sum_counts_as_0() {
+        // Y of ACES2065-1 (SMPTE ST 2065-1, annex A): its blue is darker than black.
+        let ap0 = Emission { weights: [0.343_966_46, 0.728_166_1, -0.072_132_546], straight: false };
+        assert_eq!(ap0.luminance(&[0.0, 0.0, 1.0, 1.0]).to_bits(), 0);
+        assert_eq!(ap0.luminance(&[0.01, 0.001, 0.3, 1.0]), 0.0);
+        assert!(ap0.luminance(&[0.1, 0.001, 0.3, 1.0]) > 0.0);
+        let wide = Emission { weights: [4.0, -5.0, 2.0], straight: false };
+        assert_eq!(wide.luminance(&[f32::MAX; 4]), 0.0);
+    }
+
+    #[test]
+    fn straight_colours_give_alphas_share() {
+        let straight = Emission { straight: true, ..REC709 };
+        for (alpha, share) in [(0.0, 0.0), (0.5, 0.5), (1.0, 1.0), (-3.0, 0.0), (7.0, 1.0), (f32::NAN, 0.0)] {
+            assert_eq!(straight.luminance(&[2.0, 2.0, 2.0, alpha]), 2.0 * share, "{alpha}");
+        }
+        assert_eq!(REC709.luminance(&[2.0, 2.0, 2.0, 0.0]), 2.0, "a flame may be premultiplied by 0");
+    }
+}
