@@ -15,6 +15,7 @@ mod reading;
 mod rex;
 mod scene;
 mod shell;
+mod signals;
 mod stderr;
 mod stdout;
 mod tradeoff;
@@ -68,6 +69,7 @@ enum Command {
 /// # Errors
 /// Those of the command; [`crate::Error::exit_code`] says what to exit with.
 pub fn run(cli: Cli) -> Result<()> {
+    signals::listen();
     match cli.command {
         Command::Apply(args) => apply::run(&args),
         Command::View(args) => view::run(&args),

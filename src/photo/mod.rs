@@ -51,6 +51,7 @@ pub use read::{MAX_PIXELS, Missing, ReadOptions, read, read_with};
 pub(crate) use shown::Shown;
 pub use tone::ToneMap;
 pub(crate) use transfer::srgb_encode;
+pub(crate) use write::holds;
 pub use write::{WriteOptions, check_name, check_target, write, write_unless};
 
 use crate::frame::Frame;
@@ -136,13 +137,15 @@ impl Photo {
     }
 
     /// Another picture in the same frame and of the same primaries, which comes from no file: scene-linear, without
-    /// alpha, and with nothing else of what this photo's file held.
+    /// alpha, and with the attributes that an OpenEXR photo has, but nothing else of what this photo's file held.
     ///
     /// # Panics
     /// If there are not as many pixels as the window holds.
     pub fn companion(&self, pixels: Vec<[f32; 4]>) -> Self {
         assert_eq!(pixels.len(), self.frame.window.pixels(), "a photo needs as many pixels as its window");
-        let source = Source { primaries: self.source.primaries, ..Source::plain() };
+        let Source { primaries, pixel_aspect, .. } = self.source;
+        let exr = self.source.exr.as_ref().map(|rest| Arc::new(rest.attributes_only(primaries)));
+        let source = Source { primaries, pixel_aspect, exr, ..Source::plain() };
         Self { frame: self.frame, pixels, source }
     }
 

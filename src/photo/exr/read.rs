@@ -180,7 +180,7 @@ fn source(layer: &Layer, header: &Header) -> Source {
     }
 }
 
-fn primaries(c: Chromaticities) -> Option<Primaries> {
+pub(super) fn primaries(c: Chromaticities) -> Option<Primaries> {
     let point = |Vec2(x, y): Vec2<f32>| DVec2::new(x.into(), y.into());
     let all = Primaries { red: point(c.red), green: point(c.green), blue: point(c.blue), white: point(c.white) };
     all.other_than_rec709()
