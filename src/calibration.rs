@@ -101,7 +101,7 @@ pub fn path() -> Result<PathBuf> {
 pub fn ready() -> Result<()> {
     let path = path()?;
     if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder).map_err(|reason| Error::write(&path, reason))?;
+        target::make_folder(folder)?;
     }
     target::check(&path, true)
 }

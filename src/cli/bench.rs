@@ -118,6 +118,9 @@ fn size(text: &str) -> Result<[u32; 2], String> {
 /// [`Error::NoContext`] without OpenGL 4.3; [`Error::Exists`] and [`Error::Write`] where a file cannot be written;
 /// [`Error::Missed`] where a bar is missed and that was asked to be an error.
 pub fn run(args: &Args) -> Result<()> {
+    let outputs = [("--csv", &args.csv), ("--json", &args.json)];
+    let outputs: Vec<_> = outputs.into_iter().filter_map(|(option, path)| Some((option, path.as_deref()?))).collect();
+    target::spare(&outputs, &[])?;
     for path in args.csv.iter().chain(&args.json) {
         target::check(path, args.force)?;
     }

@@ -16,6 +16,7 @@ mod reading;
 mod rex;
 mod scene;
 mod shell;
+mod signals;
 mod stderr;
 mod stdout;
 mod tradeoff;
@@ -86,6 +87,7 @@ fn without_dashes(mut error: clap::Error) -> clap::Error {
 /// # Errors
 /// Those of the command; [`crate::Error::exit_code`] says what to exit with.
 pub fn run(cli: Cli) -> Result<()> {
+    signals::listen();
     match cli.command {
         Command::Apply(args) => apply::run(&args),
         Command::View(args) => view::run(&args),

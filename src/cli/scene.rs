@@ -41,6 +41,12 @@ pub struct SceneArgs {
 }
 
 impl SceneArgs {
+    /// The files that the scene is read from, those among them that others refer to.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let given = [&self.scene, &self.lens, &self.lights].into_iter().flatten();
+        given.flat_map(|path| std::iter::once(path.clone()).chain(scene::referred(path))).collect()
+    }
+
     /// The look that the files and options give; its files are read and checked before anything long begins.
     ///
     /// # Errors

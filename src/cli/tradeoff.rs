@@ -76,6 +76,8 @@ A folder that an earlier run has written is written anew.";
 /// written; [`crate::Error::Usage`] where nothing glares; and those of reading the photo and the scene.
 pub fn run(args: &Args) -> Result<()> {
     let progress = Progress::start(args.quiet);
+    let inputs: Vec<_> = std::iter::once(args.photo.clone()).chain(args.scene.files()).collect();
+    tradeoff::spare(&args.output, &inputs)?;
     let mut look = args.scene.look()?;
     look.find = args.find.over(look.find);
     progress.step("reading the photo");

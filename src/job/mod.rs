@@ -59,9 +59,11 @@ pub struct Job<'a> {
     pub warnings: Vec<String>,
 }
 
-/// What is wanted besides the picture. The picture does not depend on it.
+/// What is wanted. The picture does not depend on what else is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wanted {
+    /// The picture; without it the photo stays as it is.
+    pub picture: bool,
     /// The glare alone.
     pub glare: bool,
     /// How long each pass takes, at the price of doing one after the other.
@@ -75,7 +77,7 @@ pub struct Wanted {
 impl Default for Wanted {
     /// The picture alone.
     fn default() -> Self {
-        Self { glare: false, times: false, verify: Verify::Sample, calibrated: true }
+        Self { picture: true, glare: false, times: false, verify: Verify::Sample, calibrated: true }
     }
 }
 
@@ -219,7 +221,13 @@ impl<'a> Job<'a> {
         if wanted.glare {
             self.glare = Some(self.stages.time("glare", || renderer.glare(frame, settings))?);
         }
-        self.passes.extend(renderer.take_times());
+        let times = renderer.take_times();
+        if !wanted.picture {
+            self.measured_ms = wanted.times.then(|| spectrum + milliseconds(&times));
+            self.passes.extend(times);
+            return Ok(Pending::default());
+        }
+        self.passes.extend(times);
         let pixels = &mut self.photo.pixels;
         let pending = self.stages.time("composite", || {
             if wanted.times {

@@ -26,7 +26,7 @@ pub(crate) fn open(folder: &Path, generator: &str, force: bool) -> Result<()> {
             return Err(Error::Occupied { path: folder.to_owned() });
         }
     }
-    std::fs::create_dir_all(folder).map_err(refused)
+    target::make_folder(folder)
 }
 
 /// Writes a picture, in place of one that is there.

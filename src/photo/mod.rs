@@ -54,6 +54,7 @@ pub use read::{MAX_PIXELS, Missing, ReadOptions, read, read_with};
 pub(crate) use shown::Shown;
 pub use tone::ToneMap;
 pub(crate) use transfer::srgb_encode;
+pub(crate) use write::holds;
 pub use write::{WriteOptions, check_name, check_target, largest_value, write, write_unless};
 
 use crate::frame::Frame;
@@ -145,15 +146,17 @@ impl Photo {
     }
 
     /// Another picture in the same frame and of the same primaries, which comes from no file: scene-linear, without
-    /// alpha, and with nothing else of what this photo's file held but a Radiance header, on which the numbers' unit
-    /// depends.
+    /// alpha, with the attributes that an OpenEXR photo has and the header of a Radiance one, on which the numbers' unit
+    /// depends, but with nothing else of what this photo's file held.
     ///
     /// # Panics
     /// If there are not as many pixels as the window holds.
     pub fn companion(&self, pixels: Vec<[f32; 4]>) -> Self {
         assert_eq!(pixels.len(), self.frame.window.pixels(), "a photo needs as many pixels as its window");
-        let Source { primaries, radiance, .. } = &self.source;
-        let source = Source { primaries: *primaries, radiance: radiance.clone(), ..Source::plain() };
+        let Source { primaries, pixel_aspect, radiance, exr, .. } = &self.source;
+        let exr = exr.as_ref().map(|rest| Arc::new(rest.attributes_only(*primaries)));
+        let (primaries, pixel_aspect, radiance) = (*primaries, *pixel_aspect, radiance.clone());
+        let source = Source { primaries, pixel_aspect, radiance, exr, ..Source::plain() };
         Self { frame: self.frame, pixels, source }
     }
 

@@ -1,14 +1,11 @@
-//! Writes a photo beside its target, then renames it.
+//! A photo into a file of any format.
 
-use std::fs::{self, File, Permissions};
-use std::io::{self, BufWriter, Cursor, Seek, SeekFrom, Write};
-use std::path::{Path, PathBuf};
-
-use tempfile::{Builder, NamedTempFile};
+use std::path::Path;
 
 use super::display::Look;
 use super::{Depth, Format, Photo, Reason, ToneMap, exr, jpeg, pfm, png, radiance, tiff};
 use crate::error::{Error, Result};
+use crate::target::{Sink, Target};
 
 /// How a photo is written.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -32,19 +29,17 @@ struct Plan {
     target: Target,
 }
 
-enum Target {
-    /// A file, written under another name in `folder` first.
-    File { path: PathBuf, folder: PathBuf },
-    /// A pipe or a device: written to as it is.
-    Stream,
-}
-
 /// Whether [`write()`] knows the format that a name's extension asks for.
 ///
 /// # Errors
 /// [`Error::Write`] where it does not.
 pub fn check_name(path: &Path) -> Result<()> {
     Format::from_extension(path).map(drop).map_err(|reason| Error::write(path, reason))
+}
+
+/// Whether the format that a name's extension asks for holds samples of this depth.
+pub(crate) fn holds(path: &Path, depth: Depth) -> bool {
+    Format::from_extension(path).is_ok_and(|format| format.depths().contains(&depth))
 }
 
 /// Whether [`write()`] would accept this target and these options: ask before the long work starts.
@@ -54,12 +49,7 @@ pub fn check_name(path: &Path) -> Result<()> {
 /// format, a depth that the format cannot hold, an exposure or a tone map for a scene-linear format, a picture too
 /// large for the format, a folder that is missing or cannot be written to.
 pub fn check_target(path: &Path, photo: &Photo, options: &WriteOptions) -> Result<()> {
-    let plan = plan(path, photo, options)?;
-    match &plan.target {
-        // A file made and removed again is the one honest test.
-        Target::File { folder, .. } => temporary(folder).map(drop).map_err(|reason| Error::write(path, reason)),
-        Target::Stream => Ok(()),
-    }
+    plan(path, photo, options)?.target.try_out()
 }
 
 /// The largest value of light that the file would hold: beyond it a pixel is not what it was. Infinite for a display's
@@ -98,62 +88,20 @@ pub fn write(path: &Path, photo: &Photo, options: &WriteOptions) -> Result<()> {
 /// Those of [`write`], and [`Error::Cancelled`]; nothing is left behind then, unless `path` is a pipe.
 pub fn write_unless(path: &Path, photo: &Photo, options: &WriteOptions, cancelled: impl Fn() -> bool) -> Result<()> {
     let plan = plan(path, photo, options)?;
-    let complain = |reason: Reason| if cancelled() { Error::Cancelled } else { Error::write(path, reason) };
-    match &plan.target {
-        Target::File { path: target, folder } => {
-            let file = temporary(folder).map_err(complain)?;
-            let guarded = Guarded { file: file.as_file(), cancelled: &cancelled };
-            plan.encode(guarded, photo).map_err(complain)?;
-            if cancelled() {
-                return Err(Error::Cancelled);
-            }
-            persist(file, path, target, options.overwrite)
-        }
-        Target::Stream => {
-            // Encoders jump back to fill in sizes, which a pipe cannot.
-            let mut memory = Cursor::new(Vec::new());
-            plan.encode(&mut memory, photo).map_err(complain)?;
-            let stream = File::options().write(true).open(path);
-            stream.and_then(|mut stream| stream.write_all(memory.get_ref())).map_err(|e| complain(e.into()))
-        }
-    }
-}
-
-/// A file that takes no more once it is called off.
-struct Guarded<'a, F> {
-    file: F,
-    cancelled: &'a dyn Fn() -> bool,
-}
-
-impl<F: Write> Write for Guarded<'_, F> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if (self.cancelled)() { Err(io::Error::other("cancelled")) } else { self.file.write(bytes) }
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.file.flush()
-    }
-}
-
-impl<F: Seek> Seek for Guarded<'_, F> {
-    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        self.file.seek(to)
-    }
+    plan.target.write(&cancelled, |sink| plan.encode(sink, photo))
 }
 
 impl Plan {
-    fn encode(&self, file: impl Write + Seek, photo: &Photo) -> Result<(), Reason> {
-        let mut writer = BufWriter::with_capacity(1 << 18, file);
+    fn encode(&self, mut writer: &mut dyn Sink, photo: &Photo) -> Result<(), Reason> {
         match (self.format, self.depth) {
-            (Format::OpenExr, depth) => exr::write(&mut writer, photo, depth)?,
-            (Format::Radiance, _) => radiance::write(&mut writer, photo)?,
-            (Format::Pfm, _) => pfm::write(&mut writer, photo)?,
-            (Format::Tiff, depth) => tiff::write(&mut writer, photo, depth, self.look)?,
-            (Format::Png, Depth::Sixteen) => png::write::<u16>(&mut writer, photo, self.look)?,
-            (Format::Png, _) => png::write::<u8>(&mut writer, photo, self.look)?,
-            (Format::Jpeg, _) => jpeg::write(&mut writer, photo, self.look)?,
+            (Format::OpenExr, depth) => exr::write(&mut writer, photo, depth),
+            (Format::Radiance, _) => radiance::write(&mut writer, photo),
+            (Format::Pfm, _) => pfm::write(&mut writer, photo),
+            (Format::Tiff, depth) => tiff::write(&mut writer, photo, depth, self.look),
+            (Format::Png, Depth::Sixteen) => png::write::<u16>(&mut writer, photo, self.look),
+            (Format::Png, _) => png::write::<u8>(&mut writer, photo, self.look),
+            (Format::Jpeg, _) => jpeg::write(&mut writer, photo, self.look),
         }
-        Ok(writer.flush()?)
     }
 }
 
@@ -164,7 +112,7 @@ fn plan(path: &Path, photo: &Photo, options: &WriteOptions) -> Result<Plan> {
         Ok((format, depth, look(format, depth, photo, options)?))
     });
     let (format, depth, look) = resolved.map_err(|reason| Error::write(path, reason))?;
-    Ok(Plan { format, depth, look, target: target(path, options.overwrite)? })
+    Ok(Plan { format, depth, look, target: Target::new(path, options.overwrite)? })
 }
 
 /// The format and the depth that a photo is written in.
@@ -218,48 +166,4 @@ fn look(format: Format, depth: Depth, photo: &Photo, options: &WriteOptions) -> 
     }
     let fallback = if photo.source.display_referred { ToneMap::None } else { ToneMap::default() };
     Ok(Look { gain: options.exposure.exp2() as f32, tone_map: options.tone_map.unwrap_or(fallback) })
-}
-
-fn target(path: &Path, overwrite: bool) -> Result<Target> {
-    // A link is followed, so that it stays a link.
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    match fs::symlink_metadata(&target) {
-        Ok(kind) if kind.is_dir() => return Err(Error::write(path, "it is a folder")),
-        Ok(kind) if !kind.is_file() && !kind.is_symlink() => return Ok(Target::Stream),
-        Ok(_) if !overwrite => return Err(Error::Exists { path: path.to_owned() }),
-        _ => {}
-    }
-    let folder = match target.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
-        _ => PathBuf::from("."),
-    };
-    if !folder.is_dir() {
-        return Err(Error::write(path, format!("there is no folder {}", folder.display())));
-    }
-    Ok(Target::File { path: target, folder })
-}
-
-/// A file in `folder` that vanishes unless it is persisted.
-fn temporary(folder: &Path) -> Result<NamedTempFile, Reason> {
-    let mut builder = Builder::new();
-    builder.prefix(".vglare-").suffix(".part");
-    // The library's own default is for secrets; a picture gets what the umask leaves, like any other file.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    Ok(builder.tempfile_in(folder)?)
-}
-
-fn persist(file: NamedTempFile, path: &Path, target: &Path, overwrite: bool) -> Result<()> {
-    let before: Option<Permissions> = fs::metadata(target).ok().map(|old| old.permissions());
-    if let Some(permissions) = before.filter(|_| overwrite) {
-        file.as_file().set_permissions(permissions).map_err(|error| Error::write(path, error))?;
-    }
-    let done = if overwrite { file.persist(target) } else { file.persist_noclobber(target) };
-    match done {
-        Ok(_) => Ok(()),
-        Err(error) if error.error.kind() == std::io::ErrorKind::AlreadyExists => {
-            Err(Error::Exists { path: path.to_owned() })
-        }
-        Err(error) => Err(Error::write(path, error.error)),
-    }
 }

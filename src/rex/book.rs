@@ -35,7 +35,7 @@ impl Book {
     /// [`Error::Write`] where a file cannot be written.
     pub fn add(&mut self, report: &Report, device: Option<&Info>) -> Result<()> {
         let folder = self.folder.join(report.name);
-        std::fs::create_dir_all(&folder).map_err(|error| Error::write(&folder, error))?;
+        target::make_folder(&folder)?;
         let mut files = Files::default();
         for figure in &report.figures {
             files.figures.push(write_figure(&folder, figure)?);

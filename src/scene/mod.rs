@@ -12,6 +12,7 @@ mod lens;
 mod lit;
 mod number;
 pub mod presets;
+mod referred;
 mod regions;
 mod sections;
 mod tables;
@@ -22,7 +23,9 @@ pub use emission::Emission;
 pub use file::{SceneFile, read_lens, read_lights, read_scene};
 pub use find::{FindOptions, Found, find};
 pub use lens::{Lens, ghosts};
+pub(crate) use referred::referred;
 pub use sections::{AccuracySection, FindSection, Goal, LookSection};
+pub(crate) use write::checked_toml;
 pub use write::{to_toml, write_scene};
 
 /// A bright source.

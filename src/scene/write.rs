@@ -21,11 +21,19 @@ use crate::{Error, Result, target};
 /// than the scene's; [`Error::Exists`] where the file is there and must not be replaced; [`Error::Write`] where the
 /// system refuses.
 pub fn write_scene(path: &Path, scene: &SceneFile, overwrite: bool) -> Result<()> {
+    target::write_text(path, &checked_toml(path, scene)?, overwrite)
+}
+
+/// The text of a scene file that is to be at `path`, which has been read again.
+///
+/// # Errors
+/// [`Error::SceneFile`] where it would not mean the same.
+pub(crate) fn checked_toml(path: &Path, scene: &SceneFile) -> Result<String> {
     let text = to_toml(scene);
     if parse_scene(path, &text)? != *scene {
         return Err(Error::scene_file(path, "a file cannot say this: the scene's period is not that of its bells"));
     }
-    target::write_text(path, &text, overwrite)
+    Ok(text)
 }
 
 /// The text of a scene file. Every number is the shortest that is read as the same one again.

@@ -29,7 +29,7 @@ use crate::{Error, Result};
 pub use front::{Crossover, Recommendation, exponent, short};
 pub use phases::PhaseCurve;
 pub use point::{Point, Storage, Sweep};
-pub use write::{check, write};
+pub use write::{check, spare, write};
 
 use looks::Looks;
 use study::Study;

@@ -22,8 +22,26 @@ const PICTURES: &str = "pictures";
 /// where it cannot be made or written to.
 pub fn check(folder: &Path, force: bool) -> Result<()> {
     open(folder, page::GENERATOR, force)?;
-    // A file made and removed again is the one honest test.
-    tempfile::Builder::new().prefix(".vglare-").tempfile_in(folder).map_err(|error| Error::write(folder, error))?;
+    target::check(&folder.join(INDEX), true)
+}
+
+/// Whether none of what [`write`] writes into a folder would replace a file that is read.
+///
+/// # Errors
+/// [`Error::Usage`] where it would.
+pub fn spare(folder: &Path, inputs: &[PathBuf]) -> Result<()> {
+    let tables = [INDEX, "results.csv", "results.json"].map(|name| folder.join(name));
+    // The names of plots and pictures come of what is measured; whatever is in their folders may be one of them.
+    let within = [PLOTS, PICTURES].iter().filter_map(|name| std::fs::read_dir(folder.join(name)).ok());
+    let within = within.flat_map(|entries| entries.flatten()).map(|entry| entry.path());
+    let written: Vec<_> = tables.into_iter().chain(within).collect();
+    for input in inputs {
+        let file = target::Identity::of(input);
+        if file.is_some() && written.iter().any(|path| target::Identity::of(path) == file) {
+            let (input, folder) = (input.display(), folder.display());
+            return Err(Error::Usage(format!("the page in {folder} would replace {input}, which is read")));
+        }
+    }
     Ok(())
 }
 
@@ -46,7 +64,7 @@ pub(super) struct Files {
 pub fn write(folder: &Path, results: &Results) -> Result<PathBuf> {
     for name in [PLOTS, PICTURES] {
         let path = folder.join(name);
-        std::fs::create_dir_all(&path).map_err(|error| Error::write(&path, error))?;
+        target::make_folder(&path)?;
     }
     let csv = folder.join("results.csv");
     target::write_text(&csv, &csv_of(&results.points).map_err(|error| Error::write(&csv, error))?, true)?;

@@ -187,7 +187,7 @@ impl Open {
         let Some(path) = self.harness.status.as_ref().filter(|_| rest > MOVING) else { return Ok(()) };
         let now = Some(Status::of(&self.app));
         if now != self.told {
-            target::write_json(path, &now, true)?;
+            target::remember_json(path, &now)?;
             self.told = now;
         }
         Ok(())

@@ -42,7 +42,9 @@ impl<'a> Job<'a> {
     pub fn compute(&mut self, computer: Option<&mut Computer>, progress: &Progress) -> Result<()> {
         let (args, look) = (self.args, self.work.look);
         let wanted = Wanted {
-            glare: args.output_options.glare.is_some(),
+            // A report alone tells of a picture that nobody keeps.
+            picture: self.paths.output.is_some() || self.paths.glare.is_none(),
+            glare: self.paths.glare.is_some(),
             times: args.verbose || args.output_options.report.is_some() || look.accuracy.goal.budget().is_some(),
             verify: args.proof.verify,
             calibrated: args.accuracy.calibrated(),
@@ -50,21 +52,27 @@ impl<'a> Job<'a> {
         self.work.compute(computer, wanted, progress)
     }
 
-    /// Writes the picture, and the glare alone where that is asked for.
+    /// Writes what is asked for: the picture, the glare alone.
     ///
     /// # Errors
     /// Those of [`photo::write`].
     pub fn write(&mut self) -> Result<()> {
         let (args, paths, photo) = (self.args, self.paths, &self.work.photo);
         let glare = self.work.glare.take();
-        self.work.warnings.extend(photo::lost(&paths.output, photo, &picture_options(args)));
-        let largest = photo::largest_value(&paths.output, photo, &picture_options(args))?;
-        self.work.warnings.extend(self.work.beyond(largest));
+        if let Some(path) = &paths.output {
+            let options = picture_options(args);
+            let largest = photo::largest_value(path, photo, &options)?;
+            self.work.warnings.extend(photo::lost(path, photo, &options));
+            self.work.warnings.extend(self.work.beyond(largest));
+        }
         self.work.stages.time("write", || {
             if let (Some(path), Some(pixels)) = (&paths.glare, glare) {
-                photo::write(path, &photo.companion(pixels), &glare_options(args))?;
+                photo::write(path, &photo.companion(pixels), &glare_options(args, path))?;
             }
-            photo::write(&paths.output, photo, &picture_options(args))
+            match &paths.output {
+                Some(path) => photo::write(path, photo, &picture_options(args)),
+                None => Ok(()),
+            }
         })
     }
 }

@@ -51,9 +51,10 @@ pub struct Args {
     /// A folder, as out/, is made if need be; each picture in it is called as its photo. A pattern has fields in its file
     /// name: #### or %04d becomes the frame number, the last number in the photo's name, with at least four digits (so do
     /// ## or %02d with two, and %d with as many as it has); {name} becomes the photo's name without its extension. One #
-    /// alone stays what it is.
-    #[arg(short, long)]
-    output: PathBuf,
+    /// alone stays what it is. The number of shot.-001.exr and shot_-1.exr is -1, whose sign counts as a digit, and that of
+    /// shot-001.exr is 1. Where --glare or --report is given, OUTPUT may be left out.
+    #[arg(short, long, required_unless_present_any = ["glare", "report"])]
+    output: Option<PathBuf>,
 
     /// Replace files that exist
     #[arg(long)]
@@ -99,6 +100,7 @@ Examples:
   vglare apply night.exr -o veiled.exr --glare glare.exr --report report.json
   vglare apply night.exr -o veiled.exr --scene scene.toml --tolerance 1e-4 --strict
   vglare apply night.exr -o veiled.exr --budget 20 --verify full
+  vglare apply night.exr --glare glare.exr --depth half
   vglare apply shot.*.exr -o veiled/ --threshold 20
   vglare apply shot.*.exr -o 'veiled.####.exr' --glare 'glare.####.exr' --report report.json
   vglare apply shot.*.exr -o 'previews/{name}.png' --keep-going --quiet";
@@ -145,8 +147,8 @@ struct ProofArgs {
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Output")]
 struct OutputArgs {
-    /// Write the glare alone as well, as it was added; scene-linear, in any format. For several photos a folder or a
-    /// pattern, like OUTPUT
+    /// Write the glare alone, as it was added; scene-linear, in any format, and with what an OpenEXR photo says of itself.
+    /// For several photos a folder or a pattern, like OUTPUT
     #[arg(long, value_name = "FILE")]
     glare: Option<PathBuf>,
 
@@ -154,7 +156,8 @@ struct OutputArgs {
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
 
-    /// Depth of the samples [default: the input's in the same format; otherwise float for OpenEXR and TIFF, 8 for PNG]
+    /// Depth of the samples [default: the input's in the same format; otherwise, and for --glare, float for OpenEXR and
+    /// TIFF, 8 for PNG]
     #[arg(long, value_enum)]
     depth: Option<DepthArg>,
 
@@ -239,7 +242,10 @@ mod tests {
     fn look(line: &str) -> Look {
         let words = shlex::split(line).unwrap().into_iter().skip(1);
         let Cli { args } = clap::Parser::try_parse_from(words).unwrap_or_else(|error| panic!("{line}: {error}"));
-        assert_eq!((&*args.inputs, &*args.output), (&["my night.exr".into()][..], Path::new("it's.png")));
+        assert_eq!(
+            (&*args.inputs, args.output.as_deref()),
+            (&["my night.exr".into()][..], Some(Path::new("it's.png")))
+        );
         args.look().unwrap()
     }
 

@@ -12,6 +12,8 @@ const NAME: &str = "{name}";
 pub enum Names {
     /// A folder, where each output is called as its photo.
     Folder(PathBuf),
+    /// One file, for one photo.
+    File(PathBuf),
     /// A file name with fields, in a folder.
     Pattern { given: PathBuf, parts: Vec<Part> },
 }
@@ -23,7 +25,7 @@ pub enum Part {
     Text(String),
     /// The photo's file name without its extension.
     Name,
-    /// The photo's frame number, with at least so many digits.
+    /// The photo's frame number, with at least so many digits; a sign counts as one, as it does for printf.
     Number(usize),
 }
 
@@ -49,7 +51,7 @@ impl Names {
     pub fn place(&self) -> &Path {
         let folder = match self {
             Self::Folder(folder) => Some(folder.as_path()),
-            Self::Pattern { given, .. } => given.parent(),
+            Self::File(given) | Self::Pattern { given, .. } => given.parent(),
         };
         folder.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
     }
@@ -64,6 +66,7 @@ impl Names {
         };
         match self {
             Self::Folder(folder) => Ok(folder.join(photo.file_name().ok_or_else(|| lacks("file", folder))?)),
+            Self::File(given) => Ok(given.clone()),
             Self::Pattern { given, parts } => {
                 let stem =
                     photo.file_stem().and_then(|stem| stem.to_str()).ok_or_else(|| lacks("readable file", given))?;
@@ -73,8 +76,9 @@ impl Names {
                         Part::Text(text) => name.push_str(text),
                         Part::Name => name.push_str(stem),
                         Part::Number(digits) => {
-                            let number = number(stem).ok_or_else(|| lacks("frame number", given))?;
-                            name.push_str(&format!("{number:0>digits$}"));
+                            let (sign, number) = number(stem).ok_or_else(|| lacks("frame number", given))?;
+                            let digits = digits.saturating_sub(sign.len());
+                            name.push_str(&format!("{sign}{number:0>digits$}"));
                         }
                     }
                 }
@@ -128,11 +132,23 @@ fn field(text: &str) -> Option<(Part, usize)> {
     }
 }
 
-/// The frame number in a file name: its last digits, without the noughts that they begin with.
-fn number(stem: &str) -> Option<&str> {
-    let last = stem.rsplit(|c: char| !c.is_ascii_digit()).find(|digits| !digits.is_empty())?;
-    let digits = last.trim_start_matches('0');
-    Some(if digits.is_empty() { "0" } else { digits })
+/// The frame number in a file name: its last digits, without the noughts that they begin with, and the sign before it.
+///
+/// A minus is a sign where the number is a part of the name by itself, as in `shot.-001` or `shot_-1`; after anything else
+/// it only keeps apart what it stands between, as in `shot-001`.
+fn number(stem: &str) -> Option<(&'static str, &str)> {
+    let until = stem.trim_end_matches(|c: char| !c.is_ascii_digit());
+    let before = until.trim_end_matches(|c: char| c.is_ascii_digit());
+    let digits = until[before.len()..].trim_start_matches('0');
+    if until.is_empty() {
+        return None;
+    }
+    let negative = before.strip_suffix('-').is_some_and(|before| before.is_empty() || before.ends_with(['.', '_']));
+    Some(match (digits, negative) {
+        ("", _) => ("", "0"),
+        (digits, true) => ("-", digits),
+        (digits, false) => ("", digits),
+    })
 }
 
 #[cfg(test)]
@@ -156,6 +172,18 @@ mod tests {
             ("{name}_%03d#.png", "é7.exr", "é7_007#.png"),
             ("out/", "in/shot.0007.exr", "out/shot.0007.exr"),
             ("a####/{name}.exr", "b.exr", "a####/b.exr"),
+            ("x.####.exr", "n.-001.exr", "x.-001.exr"),
+            ("x.####.exr", "n.0001.exr", "x.0001.exr"),
+            ("x_%04d.exr", "n_-12345.exr", "x_-12345.exr"),
+            ("x_%02d.exr", "n.-0007.exr", "x_-7.exr"),
+            ("x%d.exr", "-3.exr", "x-3.exr"),
+            ("x.####.exr", "n.-000.exr", "x.0000.exr"),
+            ("x.####.exr", "shot-001.exr", "x.0001.exr"),
+            ("x.####.exr", "take.2-17.exr", "x.0017.exr"),
+            ("x.####.exr", "2024-01-05.exr", "x.0005.exr"),
+            ("x.##.exr", "n.--5.exr", "x.05.exr"),
+            ("x.##.exr", "n.-12.v.exr", "x.-12.exr"),
+            ("x%d.exr", "n.123456789012345678901234567890.exr", "x123456789012345678901234567890.exr"),
         ] {
             assert_eq!(of(given, photo).as_deref(), Some(expected), "{given} of {photo}");
         }

@@ -1,56 +1,57 @@
 //! Which files a photo becomes, and whether they may be written.
 
 use std::collections::HashMap;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::Args;
 use super::names::Names;
-use crate::photo::{self, Photo, WriteOptions};
-use crate::{Error, Result, target};
+use crate::photo::{self, Depth, Photo, WriteOptions};
+use crate::target::{self, Identity};
+use crate::{Error, Result};
 
 /// A photo and the files that it becomes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Paths {
     pub input: PathBuf,
-    pub output: PathBuf,
+    pub output: Option<PathBuf>,
     pub glare: Option<PathBuf>,
 }
 
 /// Several photos, and where their pictures go.
 pub struct Sequence {
     pub frames: Vec<Paths>,
-    /// The folder that the pictures go to.
-    pub place: PathBuf,
+    /// The folder that the pictures go to, or else the glare alone; none where there is a report only.
+    pub place: Option<PathBuf>,
 }
 
 impl Paths {
     /// Those of a single photo, as they were given.
-    pub fn single(args: &Args) -> Self {
+    fn single(args: &Args) -> Self {
         let glare = args.output_options.glare.clone();
         Self { input: args.inputs[0].clone(), output: args.output.clone(), glare }
+    }
+
+    /// The files that the photo becomes.
+    pub fn pictures(&self) -> impl Iterator<Item = &PathBuf> {
+        self.output.iter().chain(&self.glare)
     }
 
     /// Everything that could keep the results from being written, before the work begins.
     ///
     /// # Errors
-    /// Those of [`photo::check_target`] and [`target::check`], and [`Error::Usage`] where two results would be one file.
+    /// Those of [`photo::check_target`] and [`target::check`].
     pub fn check(&self, args: &Args, photo: &Photo) -> Result<()> {
-        let report = args.output_options.report.as_ref();
-        photo::check_target(&self.output, photo, &picture_options(args))?;
+        if let Some(path) = &self.output {
+            photo::check_target(path, photo, &picture_options(args))?;
+        }
         if let Some(path) = &self.glare {
             let glare = photo.companion(vec![[0.0; 4]; photo.frame.window.pixels()]);
-            photo::check_target(path, &glare, &glare_options(args))?;
+            photo::check_target(path, &glare, &glare_options(args, path))?;
         }
-        if let Some(path) = report {
-            target::check(path, args.force)?;
+        match &args.output_options.report {
+            Some(path) => target::check(path, args.force),
+            None => Ok(()),
         }
-        let paths = [Some(&self.output), self.glare.as_ref(), report];
-        let paths: Vec<_> = paths.into_iter().flatten().collect();
-        if (1..paths.len()).any(|k| paths[..k].contains(&paths[k])) {
-            return Err(Error::Usage("--output, --glare and --report need a file each".into()));
-        }
-        Ok(())
     }
 
     /// Makes the folders of the results.
@@ -58,14 +59,7 @@ impl Paths {
     /// # Errors
     /// [`Error::Write`] where the system refuses.
     pub fn make_folders(&self) -> Result<()> {
-        for path in [Some(&self.output), self.glare.as_ref()].into_iter().flatten() {
-            let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) else { continue };
-            match fs::create_dir(folder) {
-                Err(error) if !folder.is_dir() => return Err(Error::write(folder, error)),
-                _ => {}
-            }
-        }
-        Ok(())
+        self.pictures().filter_map(|path| path.parent()).try_for_each(target::make_folder)
     }
 }
 
@@ -80,42 +74,63 @@ pub fn picture_options(args: &Args) -> WriteOptions {
     }
 }
 
-/// How the glare is written: it is to be measured, not looked at, so always as exact as the format allows.
-pub fn glare_options(args: &Args) -> WriteOptions {
-    WriteOptions { depth: None, exposure: 0.0, tone_map: None, overwrite: args.force }
+/// How the glare is written: as it is, and as exact as its format allows unless another depth is asked for. Beside a
+/// picture, that is a depth which the glare's format may not have.
+pub fn glare_options(args: &Args, path: &Path) -> WriteOptions {
+    let asked: Option<Depth> = args.output_options.depth.map(Into::into);
+    let depth = asked.filter(|&depth| args.output.is_none() || photo::holds(path, depth));
+    WriteOptions { depth, exposure: 0.0, tone_map: None, overwrite: args.force }
 }
 
-/// The photos of a sequence, with their outputs; none where a single photo becomes a single file.
+/// What is to be done: photos with their outputs.
+pub enum Work {
+    /// A photo that becomes single files.
+    Single(Paths),
+    Sequence(Sequence),
+}
+
+/// The photos with their outputs.
 ///
 /// # Errors
-/// [`Error::Usage`] where the names do not give each photo a file of its own, [`Error::Write`] for a name that cannot be
-/// written, [`Error::Exists`] where a file is there and must not be replaced: before anything is read.
-pub fn sequence(args: &Args) -> Result<Option<Sequence>> {
+/// [`Error::Usage`] where the names do not give each photo a file of its own, or one that is read would be replaced;
+/// [`Error::Write`] for a name that cannot be written, [`Error::Exists`] where a file is there and must not be replaced:
+/// before anything is read.
+pub fn work(args: &Args) -> Result<Work> {
     let several = args.inputs.len() > 1;
-    let names = match Names::new(&args.output) {
-        Some(names) => names,
-        None if several => folder(&args.output, "--output")?,
-        None => return Ok(None),
+    let names = |given: Option<&Path>, option: &str| {
+        let named = |given: &Path| match Names::new(given) {
+            Some(names) => Ok(names),
+            None if several => folder(given, option),
+            None => Ok(Names::File(given.to_owned())),
+        };
+        given.map(named).transpose()
     };
-    let glare = args.output_options.glare.as_deref();
-    let glare = glare.map(|given| Names::new(given).map_or_else(|| folder(given, "--glare"), Ok)).transpose()?;
+    let pictures = names(args.output.as_deref(), "--output")?;
+    let glare = names(args.output_options.glare.as_deref(), "--glare")?;
+    let is_file = |names: &Names| matches!(names, Names::File(_));
+    if !several && pictures.iter().chain(&glare).all(is_file) {
+        let paths = Paths::single(args);
+        apart(args, std::slice::from_ref(&paths))?;
+        return Ok(Work::Single(paths));
+    }
     let frame = |input: &PathBuf| {
-        let glare = glare.as_ref().map(|glare| glare.of(input)).transpose()?;
-        Ok(Paths { input: input.clone(), output: names.of(input)?, glare })
+        let of = |names: &Option<Names>| names.as_ref().map(|names| names.of(input)).transpose();
+        Ok(Paths { input: input.clone(), output: of(&pictures)?, glare: of(&glare)? })
     };
     let frames = args.inputs.iter().map(frame).collect::<Result<Vec<_>>>()?;
     apart(args, &frames)?;
-    [Some(&names), glare.as_ref()].into_iter().flatten().try_for_each(|names| room(names.place()))?;
-    for path in frames.iter().flat_map(|frame| [Some(&frame.output), frame.glare.as_ref()]).flatten() {
+    pictures.iter().chain(&glare).try_for_each(|names| room(names.place()))?;
+    for path in frames.iter().flat_map(Paths::pictures) {
         photo::check_name(path)?;
-        if path.exists() && !args.force {
+        if path.is_file() && !args.force {
             return Err(Error::Exists { path: path.clone() });
         }
     }
     if let Some(path) = &args.output_options.report {
         target::check(path, args.force)?;
     }
-    Ok(Some(Sequence { frames, place: names.place().to_owned() }))
+    let place = pictures.as_ref().or(glare.as_ref()).map(|names| names.place().to_owned());
+    Ok(Work::Sequence(Sequence { frames, place }))
 }
 
 /// A name without fields that many outputs are to share, as the folder that it can only be.
@@ -145,40 +160,47 @@ fn room(folder: &Path) -> Result<()> {
     if parent.is_dir() { Ok(()) } else { Err(Error::write(folder, format!("there is no folder {}", parent.display()))) }
 }
 
-/// Whether every output is a file of its own, and no other frame's photo.
+/// Whether every output is a file of its own, and nothing that is read. Only a picture may replace the photo that it was
+/// made of.
 fn apart(args: &Args, frames: &[Paths]) -> Result<()> {
-    // By which frame each file is made; by none, the report.
-    let mut makers: HashMap<PathBuf, Option<usize>> = HashMap::new();
-    if let Some(report) = &args.output_options.report {
-        makers.insert(real(report), None);
+    // By which frame each file is made, and whether it is its picture; by none, the report.
+    let mut makers: HashMap<Identity, Option<(usize, bool)>> = HashMap::new();
+    let report = args.output_options.report.as_deref();
+    if let Some(report) = report.and_then(Identity::of) {
+        makers.insert(report, None);
     }
     let input = |index: usize| frames[index].input.display();
     for (index, frame) in frames.iter().enumerate() {
-        for path in [Some(&frame.output), frame.glare.as_ref()].into_iter().flatten() {
-            let Some(maker) = makers.insert(real(path), Some(index)) else { continue };
+        for path in frame.pictures() {
+            let maker = (index, Some(path) == frame.output.as_ref());
+            let Some(other) = Identity::of(path).and_then(|file| makers.insert(file, Some(maker))) else { continue };
             let (path, this) = (path.display(), input(index));
-            return Err(Error::Usage(match maker {
-                Some(other) if other != index => format!("{} and {this} would both become {path}", input(other)),
+            return Err(Error::Usage(match other {
+                Some((other, _)) if other != index => format!("{} and {this} would both become {path}", input(other)),
                 _ => format!("--output, --glare and --report need a file each, and {path} would be two of them"),
             }));
         }
     }
+    let maker = |path: &Path| Identity::of(path).and_then(|file| makers.get(&file).copied());
     for (index, frame) in frames.iter().enumerate() {
         let this = frame.input.display();
-        match makers.get(&real(&frame.input)) {
-            Some(&Some(maker)) if maker != index => {
+        match maker(&frame.input) {
+            Some(Some((maker, _))) if maker != index => {
                 return Err(Error::Usage(format!("the output of {} would replace {this}, a photo too", input(maker))));
             }
+            Some(Some((_, false))) => return Err(Error::Usage(format!("--glare would replace {this}, the photo"))),
             Some(None) => return Err(Error::Usage(format!("--report would replace {this}, a photo"))),
             _ => {}
         }
     }
+    for path in args.scene.files() {
+        let option = match maker(&path) {
+            None => continue,
+            Some(None) => "--report",
+            Some(Some((_, true))) => "--output",
+            Some(Some((_, false))) => "--glare",
+        };
+        return Err(Error::Usage(format!("{option} would replace {}, which the scene is read from", path.display())));
+    }
     Ok(())
-}
-
-/// A path by which the same file is always the same, whether it is there or not.
-fn real(path: &Path) -> PathBuf {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let whole = || fs::canonicalize(folder).ok().and_then(|folder| Some(folder.join(path.file_name()?)));
-    fs::canonicalize(path).ok().or_else(whole).unwrap_or_else(|| path.to_owned())
 }

@@ -17,7 +17,8 @@ use crate::scene::Light;
 pub struct Report<'a> {
     vglare: &'static str,
     input: PhotoReport,
-    output: String,
+    output: Option<String>,
+    glare: Option<String>,
     scene: SceneReport<'a>,
     strength: f64,
     size: f64,
@@ -104,7 +105,8 @@ impl<'a> Report<'a> {
         Self {
             vglare: env!("CARGO_PKG_VERSION"),
             input: photo_report(job),
-            output: job.paths.output.display().to_string(),
+            output: job.paths.output.as_ref().map(|path| path.display().to_string()),
+            glare: job.paths.glare.as_ref().map(|path| path.display().to_string()),
             scene: scene_report(&job.work),
             strength: job.work.look.strength,
             size: job.work.look.size,

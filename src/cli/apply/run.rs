@@ -1,7 +1,7 @@
 //! The run itself: one photo after the other, or a single one.
 
 use super::job::Job;
-use super::outputs::{self, Paths};
+use super::outputs::{self, Paths, Work};
 use super::report::Report;
 use super::{Args, sequence, summary};
 use crate::cli::progress::Progress;
@@ -16,22 +16,21 @@ use crate::{Error, Result, target};
 /// # Errors
 /// Whatever keeps a picture from being written; nothing is left half-written then.
 pub fn run(args: &Args) -> Result<()> {
-    match outputs::sequence(args)? {
-        Some(frames) => sequence::run(args, &frames),
-        None => single(args),
+    match outputs::work(args)? {
+        Work::Sequence(frames) => sequence::run(args, &frames),
+        Work::Single(paths) => single(args, &paths),
     }
 }
 
-fn single(args: &Args) -> Result<()> {
+fn single(args: &Args, paths: &Paths) -> Result<()> {
     let progress = Progress::start(args.quiet);
     let look = args.look()?;
-    let paths = Paths::single(args);
     progress.step("reading the photo");
     let mut stages = Stages::default();
-    let (photo, mut computer) = stages.time("read", || read(args, &paths, &look))?;
+    let (photo, mut computer) = stages.time("read", || read(args, paths, &look))?;
 
     progress.step("finding the lights");
-    let mut job = Job::found(args, &paths, &look, photo, stages)?;
+    let mut job = Job::found(args, paths, &look, photo, stages)?;
     job.compute(computer.as_mut(), &progress)?;
 
     progress.step("writing");

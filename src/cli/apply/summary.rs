@@ -29,7 +29,11 @@ pub fn print(job: &Job<'_>) -> Result<()> {
             about_times(out, job)?;
         }
         let total: f64 = job.work.stages.0.iter().map(|(_, ms)| ms).sum();
-        writeln!(out, "wrote    {} in {:.2} s", job.paths.output.display(), total * 1e-3)
+        let written: Vec<_> = job.paths.pictures().map(|path| path.display().to_string()).collect();
+        match &written[..] {
+            [] => writeln!(out, "done     in {:.2} s, without a picture", total * 1e-3),
+            written => writeln!(out, "wrote    {} in {:.2} s", written.join(" and "), total * 1e-3),
+        }
     })
 }
 

@@ -199,8 +199,13 @@ impl<'a> Tally<'a> {
         if let Some(info) = &self.info {
             writeln!(out, "renderer {}, {}", info.renderer, info.route)?;
         }
-        let (written, all, place) = (self.written, self.sequence.frames.len(), self.sequence.place.display());
-        write!(out, "wrote    {written} of {all} pictures into {place} in {seconds:.2} s")?;
+        let (written, all) = (self.written, self.sequence.frames.len());
+        match &self.sequence.place {
+            Some(place) => {
+                write!(out, "wrote    {written} of {all} pictures into {} in {seconds:.2} s", place.display())?
+            }
+            None => write!(out, "done     {written} of {all} photos, without pictures, in {seconds:.2} s")?,
+        }
         if written > 1 { writeln!(out, ", {:.2} s each", seconds / written as f64) } else { writeln!(out) }
     }
 }
@@ -208,7 +213,8 @@ impl<'a> Tally<'a> {
 /// A photo that was written, in a line.
 fn line(out: &mut dyn Write, job: &Job<'_>) -> io::Result<()> {
     let (photo, scene) = (&job.work.photo, &job.work.scene);
-    write!(out, "photo    {}: {} x {}, ", job.paths.output.display(), photo.width(), photo.height())?;
+    let path = job.paths.pictures().next().unwrap_or(&job.paths.input);
+    write!(out, "photo    {}: {} x {}, ", path.display(), photo.width(), photo.height())?;
     if let Some(found) = &scene.found {
         write!(out, "{} lights at {:.4} and above, ", scene.lights.len(), found.threshold)?;
     }

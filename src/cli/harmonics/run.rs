@@ -10,7 +10,7 @@ use crate::cli::progress::Progress;
 use crate::cli::stderr;
 use crate::photo::{self, BadPixels, Photo, WriteOptions};
 use crate::series::sphere::{Coefficients, Grid, Reading, project_panorama, project_samples, project_turned, turn};
-use crate::{Error, Result};
+use crate::{Error, Result, target};
 
 /// What a run has come to know, for the summary.
 pub struct Run<'a> {
@@ -43,6 +43,7 @@ pub struct Check {
 /// Whatever keeps the picture from being written; nothing is left half-written then.
 pub fn run(args: &Args) -> Result<()> {
     let started = Instant::now();
+    apart(args)?;
     let progress = Progress::start(args.quiet);
     progress.step("reading the panorama");
     let panorama = Panorama::read(args)?;
@@ -91,13 +92,19 @@ fn range(pixels: &[[f32; 4]]) -> [f32; 2] {
 }
 
 /// Everything that could keep the results from being written, before the work begins.
+/// Whether no file would be written twice, and the panorama only by what becomes of it.
+fn apart(args: &Args) -> Result<()> {
+    let output = ("--output", args.output.as_path());
+    let coefficients = args.coefficients.as_deref().map(|path| ("--coefficients", path));
+    let outputs: Vec<_> = std::iter::once(output).chain(coefficients).collect();
+    target::spare(&outputs, &[])?;
+    target::spare(&outputs[1..], &[("the panorama", &args.panorama)])
+}
+
 fn check_targets(args: &Args, output: &Photo) -> Result<()> {
     photo::check_target(&args.output, output, &write_options(args))?;
     if let Some(path) = &args.coefficients {
         coefficients::check(path, args.force)?;
-        if *path == args.output {
-            return Err(Error::Usage("--output and --coefficients need a file each".into()));
-        }
     }
     Ok(())
 }

@@ -30,13 +30,14 @@ mod write;
 use std::fmt;
 
 use exr::block::chunk::Chunk;
-use exr::meta::Headers;
+use exr::meta::attribute::{ChannelDescription, ChannelList, LineOrder, SampleType};
+use exr::meta::{BlockDescription, Headers};
 
 pub(super) use read::read;
 pub(super) use write::write;
 
-use super::Reason;
-use layer::Layer;
+use super::{Primaries, Reason};
+use layer::{Colours, Layer, Member, Role};
 use picture::Planes;
 
 /// What an OpenEXR file holds beside the photo's pixels.
@@ -53,6 +54,33 @@ pub(super) struct Rest {
     is_subsampled: bool,
     /// The shares of red, green and blue in luminance that chroma was read with.
     weights: [f64; 3],
+}
+
+impl Rest {
+    /// What a picture beside the photo, of the same frame, three colours and no alpha, takes over: the attributes of the
+    /// photo's part and of its file. Not its other channels and parts, nor what is said of those or shows the photo.
+    pub fn attributes_only(&self, primaries: Option<Primaries>) -> Self {
+        let mut header = self.headers[self.layer.part()].clone();
+        let colour = |name| ChannelDescription::named(name, SampleType::F32);
+        header.channels = ChannelList::new(["B", "G", "R"].into_iter().map(colour).collect());
+        // Pixels may have been taken for other primaries than the file names.
+        let named = header.shared_attributes.chromaticities.map(read::primaries);
+        if named.and_then(Primaries::other_than_rec709) != primaries {
+            header.shared_attributes.chromaticities = primaries.map(write::chromaticities);
+        }
+        (header.own_attributes.preview, header.own_attributes.multi_view_names) = (None, None);
+        let header = header.with_encoding(write::COMPANION, BlockDescription::ScanLines, LineOrder::Increasing);
+        let roles = [2, 1, 0].map(Role::Component).to_vec();
+        let member = Member { part: 0, prefix: String::new(), roles };
+        Self {
+            headers: Headers::from_elem(header, 1),
+            layer: Layer { members: vec![member], colours: Colours::Rgb },
+            planes: vec![vec![None; 3]],
+            chunks: Vec::new(),
+            is_subsampled: false,
+            weights: self.weights,
+        }
+    }
 }
 
 impl fmt::Debug for Rest {

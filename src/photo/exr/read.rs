@@ -167,7 +167,7 @@ fn source(layer: &Layer, headers: &[Header], options: &ReadOptions) -> (Source, 
     (source, notes)
 }
 
-fn primaries(c: Chromaticities) -> Primaries {
+pub(super) fn primaries(c: Chromaticities) -> Primaries {
     let point = |Vec2(x, y): Vec2<f32>| DVec2::new(x.into(), y.into());
     Primaries { red: point(c.red), green: point(c.green), blue: point(c.blue), white: point(c.white) }
 }

@@ -24,6 +24,9 @@ use super::{Rest, explain, guard};
 /// Blocks that are compressed together.
 const BLOCKS_A_THREAD: usize = 4;
 
+/// How a picture is compressed that comes from no OpenEXR file.
+pub(super) const COMPANION: Compression = Compression::ZIP16;
+
 /// What a channel of the picture's parts is filled with.
 #[derive(Clone, Copy)]
 struct Fill<'p> {
@@ -105,12 +108,12 @@ fn plain_header(photo: &Photo) -> Header {
     let pixel_aspect = photo.source.pixel_aspect as f32;
     let place = LayerAttributes { layer_position: Vec2(window.x, window.y), ..LayerAttributes::default() };
     Header::new(Text::from("picture"), size, Default::default())
-        .with_encoding(Compression::ZIP16, BlockDescription::ScanLines, LineOrder::Increasing)
+        .with_encoding(COMPANION, BlockDescription::ScanLines, LineOrder::Increasing)
         .with_attributes(place)
         .with_shared_attributes(ImageAttributes { chromaticities, pixel_aspect, ..ImageAttributes::new(bounds) })
 }
 
-fn chromaticities(primaries: Primaries) -> Chromaticities {
+pub(super) fn chromaticities(primaries: Primaries) -> Chromaticities {
     let point = |p: DVec2| Vec2(p.x as f32, p.y as f32);
     let Primaries { red, green, blue, white } = primaries;
     Chromaticities { red: point(red), green: point(green), blue: point(blue), white: point(white) }

@@ -8,12 +8,12 @@ use egui::{CentralPanel, Panel, ProgressBar, ThemePreference, Ui};
 use super::App;
 use super::ask::{Questions, likely};
 use super::menu::{mark, recent};
-use crate::Result;
 use crate::scene::{read_scene, write_scene};
 use crate::viewer::ask::Purpose;
 use crate::viewer::document::Document;
 use crate::viewer::export::{Export, Subject};
 use crate::viewer::model::{Look, State, Theme, command_line};
+use crate::{Result, target};
 
 /// How often the file of a look is looked at while nothing else happens.
 const LOOK_AGAIN: Duration = Duration::from_secs(2);
@@ -119,8 +119,21 @@ impl App {
         }
     }
 
-    /// Writes the look of the document that is shown as a scene file, in place of one that is there.
+    /// Whether a path is none of the files that the window shows: the photos, but for `own`, and their looks' files.
+    fn check_spare(&self, path: &Path, own: Option<&Path>, looks: bool) -> Result<()> {
+        let documents = || self.documents.iter().map(|(_, document)| document);
+        let photos = documents().map(|document| document.path.as_path()).filter(|photo| Some(*photo) != own);
+        let files = documents().filter_map(|document| Some(document.file.as_ref()?.path.as_path()));
+        let photos = photos.map(|photo| ("a photo that is open", photo));
+        let inputs: Vec<_> = photos.chain(files.filter(|_| looks).map(|file| ("the file of a look", file))).collect();
+        target::spare(&[("this", path)], &inputs)
+    }
+
+    /// Writes the look of the document that is shown as a scene file, in place of one that is there, unless that is a photo.
     pub fn save_look(&mut self, path: &Path) {
+        if let Err(error) = self.check_spare(path, None, false) {
+            return self.notice(error.to_string());
+        }
         let Some(document) = self.document_mut() else { return };
         match write_scene(path, &document.look.to_scene(), true) {
             Ok(()) => {
@@ -131,9 +144,14 @@ impl App {
         }
     }
 
-    /// Begins to write a picture of the document that is shown, in place of one that is there.
+    /// Begins to write a picture of the document that is shown, in place of one that is there, unless that is another photo
+    /// or a look's file. The glare alone does not replace its own photo either.
     pub fn export(&mut self, subject: Subject, path: &Path) {
         let Some(document) = self.document() else { return };
+        let own = (subject == Subject::Picture).then_some(document.path.as_path());
+        if let Err(error) = self.check_spare(path, own, true) {
+            return self.notice(error.to_string());
+        }
         match Export::start(document, subject, path, &self.wake) {
             Ok(export) => self.files.exports.push(export),
             Err(error) => self.notice(error.to_string()),

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use etcetera::BaseStrategy as _;
 
 use super::Look;
-use crate::scene::{read_scene, write_scene};
+use crate::scene::{checked_toml, read_scene};
 use crate::{Error, Result, target};
 
 /// Names another folder than the user's state folder.
@@ -64,9 +64,10 @@ impl State {
     /// Keeps a look instead of the one that was kept before.
     ///
     /// # Errors
-    /// Those of [`write_scene`], and [`Error::Write`] where the folder cannot be made.
+    /// Those of [`checked_toml`] and [`target::remember_text`], and [`Error::Write`] where the folder cannot be made.
     pub fn keep_look(&self, look: &Look) -> Result<()> {
-        write_scene(&self.place(LOOK)?, &look.to_scene(), true)
+        let path = self.place(LOOK)?;
+        target::remember_text(&path, &checked_toml(&path, &look.to_scene())?)
     }
 
     /// Where the look is kept.
@@ -94,7 +95,7 @@ impl State {
         recent.retain(|other| *other != photo);
         recent.insert(0, photo);
         recent.truncate(MOST_RECENT);
-        target::write_json(&self.place(RECENT)?, &recent, true)
+        target::remember_json(&self.place(RECENT)?, &recent)
     }
 
     /// The photos that were opened last, the latest first.
@@ -117,7 +118,7 @@ impl State {
     /// # Errors
     /// [`Error::Write`] where the folder cannot be made or the file cannot be written.
     pub fn keep_size(&self, size: [u32; 2]) -> Result<()> {
-        target::write_json(&self.place(WINDOW)?, &size, true)
+        target::remember_json(&self.place(WINDOW)?, &size)
     }
 
     /// The window's size, if one was kept that is of use.
@@ -132,7 +133,7 @@ impl State {
     /// # Errors
     /// [`Error::Write`] where the folder cannot be made or the file cannot be written.
     pub fn keep_theme(&self, theme: Theme) -> Result<()> {
-        target::write_json(&self.place(THEME)?, &theme, true)
+        target::remember_json(&self.place(THEME)?, &theme)
     }
 
     /// The window's theme, if one was kept that is known.
