@@ -44,6 +44,7 @@ use std::sync::Arc;
 
 use glam::DMat3;
 
+pub(crate) use bad::not_finite;
 pub use bad::{BadKind, BadPixels, survey};
 pub use format::{Depth, Format};
 pub use primaries::Primaries;
