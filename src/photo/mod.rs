@@ -97,7 +97,7 @@ pub struct Source {
     pub display_referred: bool,
     /// The colours of (1,0,0), (0,1,0), (0,0,1) and (1,1,1), where they are not Rec.709's (scene-linear formats only).
     pub primaries: Option<Primaries>,
-    /// Width of a pixel over its height, > 0; 1 in most files.
+    /// Width of a pixel over its height as it is shown, > 0; 1 in most files. The frame of a photo that was read has it too.
     pub pixel_aspect: f64,
     /// What the picture is called in a file that holds several: a layer, a part, a page.
     pub picture: Option<String>,
@@ -136,14 +136,15 @@ impl Photo {
         Self { frame, pixels, source: Source::plain() }
     }
 
-    /// Another picture in the same frame and of the same primaries, which comes from no file: scene-linear, without
+    /// Another picture in the same frame and of the same primaries and shape of pixels, which comes from no file: scene-linear, without
     /// alpha, and with nothing else of what this photo's file held.
     ///
     /// # Panics
     /// If there are not as many pixels as the window holds.
     pub fn companion(&self, pixels: Vec<[f32; 4]>) -> Self {
         assert_eq!(pixels.len(), self.frame.window.pixels(), "a photo needs as many pixels as its window");
-        let source = Source { primaries: self.source.primaries, ..Source::plain() };
+        let pixel_aspect = self.source.pixel_aspect;
+        let source = Source { primaries: self.source.primaries, pixel_aspect, ..Source::plain() };
         Self { frame: self.frame, pixels, source }
     }
 

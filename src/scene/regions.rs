@@ -10,7 +10,8 @@ use rayon::prelude::*;
 
 use super::threshold::luminance;
 
-/// Sums over pixels of light. Positions are columns and rows of the stored window, areas are pixels.
+/// Sums over pixels of light. Positions are columns and rows of the stored window, columns times the pixels' aspect, so that
+/// a pixel's height is the unit of both; areas are pixels.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Moments {
     /// Sum of radiance, RGB.
@@ -42,8 +43,8 @@ impl Moments {
         self.spread / (2.0 * self.weight)
     }
 
-    /// Of neighbouring pixels in a row, the first of which is in column `i`.
-    fn of_run(pixels: &[[f32; 4]], weights: [f32; 3], i: usize, j: usize) -> Self {
+    /// Of neighbouring pixels in row `j`, the first of which is in column `i`.
+    fn of_run(pixels: &[[f32; 4]], weights: [f32; 3], i: usize, j: usize, aspect: f64) -> Self {
         let (mut flux, mut sums) = ([0.0; 3], [0.0; 3]);
         for (k, pixel) in pixels.iter().enumerate() {
             let (l, k) = (f64::from(luminance(pixel, weights)), k as f64);
@@ -53,8 +54,8 @@ impl Moments {
             flux.iter_mut().zip(pixel).for_each(|(sum, &c)| *sum += f64::from(c.max(0.0)));
         }
         let offset = sums[1] / sums[0];
-        let mean = DVec2::new(i as f64 + offset, j as f64);
-        Self { flux, weight: sums[0], mean, spread: (sums[2] - sums[1] * offset).max(0.0) }
+        let mean = DVec2::new(aspect * (i as f64 + offset), j as f64);
+        Self { flux, weight: sums[0], mean, spread: aspect * aspect * (sums[2] - sums[1] * offset).max(0.0) }
     }
 }
 
@@ -75,13 +76,19 @@ impl Run {
 
 /// Every region of pixels at or above `threshold`, in the order of their first pixels.
 ///
-/// Black pixels are in none, whatever the threshold. `width` is that of a row, not 0.
-pub(super) fn regions(pixels: &[[f32; 4]], width: usize, weights: [f32; 3], threshold: f32) -> Vec<Moments> {
+/// Black pixels are in none, whatever the threshold. `width` is that of a row, not 0; `aspect` a pixel's over its height.
+pub(super) fn regions(
+    pixels: &[[f32; 4]],
+    width: usize,
+    weights: [f32; 3],
+    threshold: f32,
+    aspect: f64,
+) -> Vec<Moments> {
     let rows = ((1 << 17) / width).max(1);
     let bands: Vec<Band> = pixels
         .par_chunks(rows * width)
         .enumerate()
-        .map(|(band, pixels)| Band::new(pixels, width, band * rows, weights, threshold))
+        .map(|(band, pixels)| Band::new(pixels, width, band * rows, (weights, aspect), threshold))
         .collect();
     stitch(bands)
 }
@@ -94,14 +101,14 @@ struct Band {
 }
 
 impl Band {
-    fn new(pixels: &[[f32; 4]], width: usize, top: usize, weights: [f32; 3], threshold: f32) -> Self {
+    fn new(pixels: &[[f32; 4]], width: usize, top: usize, (weights, aspect): ([f32; 3], f64), threshold: f32) -> Self {
         let mut regions = Regions::default();
         let (mut first, mut above, mut runs) = (Vec::new(), Vec::new(), Vec::new());
         for (j, row) in pixels.chunks_exact(width).enumerate() {
             runs.clear();
             let mut touched = 0;
             each_run(row, weights, threshold, |start, end| {
-                let moments = Moments::of_run(&row[start..end], weights, start, top + j);
+                let moments = Moments::of_run(&row[start..end], weights, start, top + j, aspect);
                 let run = Run { start: start as u32, end: end as u32, region: 0 };
                 runs.push(Run { region: regions.add(&run, &moments, &above, &mut touched), ..run });
             });
@@ -228,7 +235,7 @@ mod tests {
     fn drawn(rows: &[&str]) -> Vec<Moments> {
         let digit = |c: char| f32::from(c.to_digit(10).unwrap_or(0) as u8);
         let pixels: Vec<_> = rows.iter().flat_map(|row| row.chars().map(|c| [digit(c); 4])).collect();
-        regions(&pixels, rows[0].len(), WEIGHTS, 1.0)
+        regions(&pixels, rows[0].len(), WEIGHTS, 1.0, 1.0)
     }
 
     /// The definition: flood every region from its first pixel.
@@ -243,7 +250,7 @@ mod tests {
                     continue;
                 }
                 let (i, j) = (p % width, p / width);
-                moments.absorb(&Moments::of_run(&pixels[p..=p], WEIGHTS, i, j));
+                moments.absorb(&Moments::of_run(&pixels[p..=p], WEIGHTS, i, j, 1.0));
                 for y in j.saturating_sub(1)..(j + 2).min(height) {
                     queue.extend((i.saturating_sub(1)..(i + 2).min(width)).map(|x| y * width + x));
                 }
@@ -291,7 +298,7 @@ mod tests {
             let pixels: Vec<_> = (0..width * height).map(|_| [random(), random(), random(), 1.0]).collect();
             let key = |m: &Moments| (m.mean.y.to_bits(), m.mean.x.to_bits(), m.weight.to_bits());
             let (mut fast, mut slow) =
-                (regions(&pixels, width, WEIGHTS, threshold), flooded(&pixels, width, threshold));
+                (regions(&pixels, width, WEIGHTS, threshold, 1.0), flooded(&pixels, width, threshold));
             assert_eq!(fast.len(), slow.len());
             fast.sort_by(|a, b| a.weight.total_cmp(&b.weight));
             slow.sort_by(|a, b| a.weight.total_cmp(&b.weight));

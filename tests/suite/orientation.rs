@@ -8,7 +8,7 @@ use vglare::scene::Ghost;
 use crate::support::check::within;
 use crate::support::{bits, glare, on_each_backend, plan_with, rgb, scenes};
 
-const FRAME: Frame = Frame { width: 97, height: 61, window: Window { x: 0, y: 0, width: 97, height: 61 } };
+const FRAME: Frame = Frame::full(97, 61);
 
 /// Red top right, blue bottom left, each on the centre of a pixel.
 fn asymmetric() -> [Ghost; 2] {

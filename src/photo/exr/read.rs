@@ -159,7 +159,7 @@ pub(super) fn frame(header: &Header) -> Result<Frame, Reason> {
         width: u32::try_from(header.layer_size.width())?,
         height: u32::try_from(header.layer_size.height())?,
     };
-    Ok(Frame { width, height, window })
+    Ok(Frame::full(width, height).with_window(window))
 }
 
 fn source(layer: &Layer, header: &Header) -> Source {
@@ -176,6 +176,7 @@ fn source(layer: &Layer, header: &Header) -> Source {
         alpha: if layer.has_alpha() { Alpha::Premultiplied } else { Alpha::None },
         grey: layer.is_grey(),
         primaries: header.shared_attributes.chromaticities.and_then(primaries),
+        pixel_aspect: header.shared_attributes.pixel_aspect.into(),
         ..Source::plain()
     }
 }

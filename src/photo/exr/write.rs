@@ -82,11 +82,12 @@ fn plain_header(photo: &Photo) -> Header {
     let size = Vec2(window.width as usize, window.height as usize);
     let bounds = IntegerBounds::new((0, 0), (frame.width as usize, frame.height as usize));
     let chromaticities = photo.source.primaries.map(chromaticities);
+    let pixel_aspect = photo.source.pixel_aspect as f32;
     let place = LayerAttributes { layer_position: Vec2(window.x, window.y), ..LayerAttributes::default() };
     Header::new(Text::from("picture"), size, Default::default())
         .with_encoding(Compression::ZIP16, BlockDescription::ScanLines, LineOrder::Increasing)
         .with_attributes(place)
-        .with_shared_attributes(ImageAttributes { chromaticities, ..ImageAttributes::new(bounds) })
+        .with_shared_attributes(ImageAttributes { chromaticities, pixel_aspect, ..ImageAttributes::new(bounds) })
 }
 
 fn chromaticities(primaries: Primaries) -> Chromaticities {

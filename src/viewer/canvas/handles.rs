@@ -35,7 +35,7 @@ fn placed(ui: &mut Ui, painter: &Painter, document: &mut Document, placement: &P
     if response.clicked() || response.drag_started() {
         document.select_ghost(index);
     }
-    if let Some(moved) = moved(&response, placement, document.frame.pixel_size()) {
+    if let Some(moved) = moved(&response, placement, document.frame.pixel_sides()) {
         document.look.ghosts[index].center += moved;
     }
     let ghost = &document.look.ghosts[index];
@@ -50,7 +50,7 @@ fn placed(ui: &mut Ui, painter: &Painter, document: &mut Document, placement: &P
     painter.circle_filled(at, 2.5, colour(ghost.radiance));
     if chosen {
         // Half picture heights in points.
-        let scale = 1.0 / (document.frame.pixel_size() * placement.pitch * placement.scale);
+        let scale = 1.0 / (document.frame.pixel_sides() * placement.pitch * placement.scale);
         let radius = (scale * document.look.size * ghost.size).as_vec2();
         painter.add(Shape::ellipse_stroke(
             at,
@@ -66,7 +66,7 @@ fn axis(ui: &mut Ui, painter: &Painter, document: &mut Document, placement: &Pla
         "The lens's axis: ghosts lie on the lines through it and their lights.\n\
          Drag it; a double click puts it back into the picture's centre.",
     );
-    if let Some(moved) = moved(&response, placement, document.frame.pixel_size()) {
+    if let Some(moved) = moved(&response, placement, document.frame.pixel_sides()) {
         document.look.axis += moved;
     }
     if response.double_clicked() {
@@ -84,7 +84,7 @@ fn light(ui: &mut Ui, painter: &Painter, document: &mut Document, placement: &Pl
     if response.clicked() || response.drag_started() {
         document.select(index);
     }
-    if let Some(moved) = moved(&response, placement, document.frame.pixel_size()) {
+    if let Some(moved) = moved(&response, placement, document.frame.pixel_sides()) {
         document.lights_mut()[index].position += moved;
     }
     let light = document.lights()[index];
@@ -119,8 +119,8 @@ fn handle(ui: &mut Ui, placement: &Placement, at: Pos2, salt: impl std::hash::Ha
     ui.interact(rect, ui.scope_id().with(("handle", salt)), Sense::click_and_drag()).on_hover_cursor(CursorIcon::Move)
 }
 
-/// By how much a handle was dragged, on the picture plane; `pixel` is the side of a pixel there.
-fn moved(response: &Response, placement: &Placement, pixel: f64) -> Option<DVec2> {
+/// By how much a handle was dragged, on the picture plane; `pixel` has the sides of a pixel there.
+fn moved(response: &Response, placement: &Placement, pixel: DVec2) -> Option<DVec2> {
     let moved = response.drag_delta();
     let by = DVec2::new(f64::from(moved.x), -f64::from(moved.y)) * placement.scale * placement.pitch * pixel;
     (response.dragged() && by != DVec2::ZERO).then_some(by)
