@@ -287,3 +287,57 @@ impl Radial for Profile {
         kinks.min(all)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of 300 rows that fall and tremble, so that kinks of both signs nearly cancel.
+    fn trembling() -> Profile {
+        let row = |i: u32| {
+            let r = f64::from(i) / 300.0;
+            [3.0 * r, (1.0 - r * r).powi(2) + 0.01 * f64::from(i * 7919 % 13)]
+        };
+        Profile::new(&(0..=300).map(row).collect::<Vec<_>>()).unwrap()
+    }
+
+    #[test]
+    fn what_a_series_needs_is_made_when_one_asks_and_once() {
+        let profile = trembling();
+        assert!(profile.variance() > 0.0 && profile.integral(DVec2::ONE) > 0.0);
+        assert!(profile.beyond.get().is_none(), "made though only the direct sum was asked for");
+        let shared = std::sync::Arc::new(profile);
+        let first = Radial::beyond(&*shared, 20.0, 0.1);
+        let made = shared.beyond.get().unwrap().as_ptr();
+        assert_eq!((Radial::beyond(&*shared, 20.0, 0.1), shared.beyond.get().unwrap().as_ptr()), (first, made));
+        assert_eq!(*shared, trembling(), "the same profile, whatever has been made of it");
+    }
+
+    #[test]
+    fn the_bound_from_looked_up_kernels_holds_between_its_steps_and_is_close() {
+        let profile = trembling();
+        let (bounds, width) = (profile.sampled(), STEP / profile.radius());
+        let (mut largest, mut sum) = (0.0f64, [0.0; 2]);
+        for (i, bound) in bounds.iter().enumerate() {
+            let exact = [0.0, 0.5].map(|between| profile.transform(width * (i as f64 + between)).abs());
+            let next = bounds.get(i + 1).copied().unwrap_or(f64::INFINITY);
+            assert!(exact[0] <= *bound && exact[1] <= bound.max(next) + 0.03 * largest.max(exact[1]), "step {i}");
+            largest = largest.max(exact[0]);
+            sum = [sum[0] + bound, sum[1] + exact[0]];
+        }
+        assert!(sum[0] < 1.06 * sum[1], "{sum:?}");
+    }
+
+    #[test]
+    fn radii_that_the_device_cannot_tell_apart_are_refused() {
+        for (rows, expected) in [
+            ([[0.0, 1.0], [1e16, 0.0]], "the radius 1e16, and radii go from 1e-15 to 1e15"),
+            ([[0.0, 1.0], [1e-300, 0.0]], "the radius 1e-300"),
+            ([[1.0, 1.0], [1.0 + 1e-9, 0.0]], "closer than 1e-7 of themselves at row 2"),
+        ] {
+            let reason = Profile::new(&rows).unwrap_err();
+            assert!(reason.contains(expected), "{reason}");
+        }
+        assert!(Profile::new(&[[0.0, 1.0], [1e12, 0.0]]).is_ok());
+    }
+}

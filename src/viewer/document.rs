@@ -165,7 +165,9 @@ impl Document {
         if gesture && self.look != *self.history.look() {
             self.history.begin();
         }
-        self.history.set(self.look.clone());
+        if self.look != *self.history.look() {
+            self.history.set(self.look.clone());
+        }
         if !gesture {
             self.history.commit();
         }
