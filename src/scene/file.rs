@@ -181,13 +181,13 @@ pub(super) fn contents(path: &Path) -> Result<Vec<u8>, String> {
     let kind = fs::metadata(path).map_err(told)?.file_type();
     if !kind.is_file() {
         let what = if kind.is_dir() { "a folder" } else { "a pipe or a device" };
-        return Err(format!("is {what}, and vglare reads regular files only"));
+        return Err(format!("cannot be read: it is {what}, and vglare reads regular files only"));
     }
     let mut bytes = Vec::new();
     fs::File::open(path).and_then(|file| file.take(MOST_BYTES + 1).read_to_end(&mut bytes)).map_err(told)?;
     match bytes.len() as u64 {
         0..=MOST_BYTES => Ok(bytes),
-        _ => Err(format!("is larger than {} MiB", MOST_BYTES >> 20)),
+        _ => Err(format!("cannot be read: it is larger than {} MiB", MOST_BYTES >> 20)),
     }
 }
 

@@ -20,6 +20,7 @@ use super::Rest;
 use super::layer::Role;
 use super::lines::Scratch;
 use super::read::{explain, frame};
+use crate::frame::Frame;
 
 /// Blocks that are compressed together.
 const BLOCKS_A_THREAD: usize = 4;
@@ -68,9 +69,9 @@ pub fn write(writer: impl Write + Seek, photo: &Photo, depth: Depth) -> Result<(
     .map_err(explain)
 }
 
-/// The picture and its window must be those that the header describes.
+/// The picture and its window must be those that the header describes; how wide its pixels are shown is another attribute.
 fn check_window(photo: &Photo, header: &Header) -> Result<(), Reason> {
-    if frame(header)? != photo.frame {
+    if (Frame { pixel_aspect: photo.frame.pixel_aspect, ..frame(header)? }) != photo.frame {
         return Err("the photo's window is not that of the file it came from".into());
     }
     Ok(())

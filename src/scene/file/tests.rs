@@ -293,8 +293,8 @@ fn only_regular_files_that_are_not_too_long_are_read() {
     }
     let pipe = folder.path().join("pipe.toml");
     if std::process::Command::new("mkfifo").arg(&pipe).status().is_ok_and(|status| status.success()) {
-        refused(&|| read_lights(&pipe).unwrap_err(), "pipe.toml: is a pipe or a device");
-        refused(&|| read_scene(&pipe).unwrap_err(), "pipe.toml: is a pipe or a device");
+        refused(&|| read_lights(&pipe).unwrap_err(), "pipe.toml: cannot be read: it is a pipe or a device");
+        refused(&|| read_scene(&pipe).unwrap_err(), "pipe.toml: cannot be read: it is a pipe or a device");
     }
     refused(&|| read_scene(folder.path()).unwrap_err(), "is a folder");
     let comment = |bytes: usize| {

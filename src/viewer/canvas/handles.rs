@@ -14,7 +14,7 @@ const REACH: f32 = 20.0;
 const MOST_MARKS: usize = 256;
 
 /// At most so many lights, and so many ghosts, have handles: the first ones on the canvas, and the one that is selected.
-pub const MOST_HANDLES: usize = 512;
+const MOST_HANDLES: usize = 512;
 
 /// Draws the handles and lets them be dragged.
 pub fn show(ui: &mut Ui, document: &mut Document, placement: &Placement) {
