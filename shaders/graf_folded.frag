@@ -10,7 +10,8 @@ layout(std140, binding = BINDING_PASS) uniform Pass {
     float rate;  // radii a unit of length
     int orders;  // M + 1
     int last;    // radius that another one follows
-    int height;  // of the picture, in pixels
+    int pad;
+    vec2 unit;   // half a pixel's width and height
 };
 layout(location = 0) out vec4 folded;
 
@@ -19,7 +20,7 @@ vec2 multiply(vec2 a, vec2 b) {
 }
 
 void main() {
-    vec2 position = vec2(2 * (first + ivec2(gl_FragCoord.xy)) + even) / float(height);
+    vec2 position = vec2(2 * (first + ivec2(gl_FragCoord.xy)) + even) * unit;
     float r = length(position);
     vec2 z = r > 0.0 ? position / r : vec2(1.0, 0.0); // exp(i theta)
     vec2 zz = multiply(z, z);

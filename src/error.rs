@@ -53,6 +53,10 @@ pub enum Error {
     #[error("the glare is off by {measured:.1e} of its largest value, and {asked:.1e} was asked")]
     ToleranceMissed { asked: f64, measured: f64 },
 
+    /// What was rendered is not finite where the photo is: too bright for 32-bit floats, or a driver's fault.
+    #[error("the glare is infinite or undefined at {pixels} pixels where the photo is not; nothing is written")]
+    NotFinite { pixels: usize },
+
     /// One photo of several could not be done.
     #[error("{}: {error}", path.display())]
     Frame { path: PathBuf, error: Box<Error> },

@@ -4,6 +4,8 @@
 //! scene means the same at every resolution. Rows of pixels are counted from the top. This is the one place that turns
 //! one into the other.
 
+use std::ops::RangeInclusive;
+
 use glam::DVec2;
 
 /// A rectangle of pixels; (0, 0) is the top left pixel of the picture.
@@ -28,8 +30,9 @@ impl Window {
 
 /// The picture (OpenEXR's display window), and the window of pixels that is stored (its data window).
 ///
-/// The picture alone sets the coordinates; the window may lie inside it, reach beyond it or miss it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// The picture alone sets the coordinates; the window may lie inside it, reach beyond it or miss it. Where pixels are not
+/// square, the picture plane is that on which it is shown: a round ghost is round there, and not in pixels.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
     /// Columns of the picture.
     pub width: u32,
@@ -37,22 +40,32 @@ pub struct Frame {
     pub height: u32,
     /// The pixels that are stored.
     pub window: Window,
+    /// Width of a pixel over its height as it is shown, [`Frame::PIXEL_ASPECTS`]; 1 in most pictures.
+    pub pixel_aspect: f64,
 }
 
 impl Frame {
-    /// A picture of `width` × `height` pixels, all of them stored.
-    pub fn full(width: u32, height: u32) -> Self {
-        Self { width, height, window: Window { x: 0, y: 0, width, height } }
+    /// What a pixel's width over its height may be.
+    pub const PIXEL_ASPECTS: RangeInclusive<f64> = 1e-3..=1e3;
+
+    /// A picture of `width` × `height` square pixels, all of them stored.
+    pub const fn full(width: u32, height: u32) -> Self {
+        Self { width, height, window: Window { x: 0, y: 0, width, height }, pixel_aspect: 1.0 }
+    }
+
+    /// Another picture of `width` × `height` pixels, all of them stored, that are shaped like these.
+    pub const fn resized(self, width: u32, height: u32) -> Self {
+        Self { pixel_aspect: self.pixel_aspect, ..Self::full(width, height) }
     }
 
     /// The same picture with another window of pixels.
-    pub fn with_window(self, window: Window) -> Self {
+    pub const fn with_window(self, window: Window) -> Self {
         Self { window, ..self }
     }
 
-    /// x of the centre of column `i`, which may be fractional: (2i + 1 − W) / H.
+    /// x of the centre of column `i`, which may be fractional: a (2i + 1 − W) / H, with the pixels' aspect a.
     pub fn x(&self, i: f64) -> f64 {
-        (2.0 * i + 1.0 - f64::from(self.width)) / f64::from(self.height)
+        self.pixel_aspect * (2.0 * i + 1.0 - f64::from(self.width)) / f64::from(self.height)
     }
 
     /// y of the centre of row `j`, counted from the top: (H − 2j − 1) / H.
@@ -68,12 +81,23 @@ impl Frame {
     /// The column and row, fractional, whose centre is `position`: the inverse of [`Frame::position`].
     pub fn pixel(&self, position: DVec2) -> DVec2 {
         let h = f64::from(self.height);
-        DVec2::new((position.x * h + f64::from(self.width) - 1.0) / 2.0, (h - 1.0 - position.y * h) / 2.0)
+        let x = position.x / self.pixel_aspect;
+        DVec2::new((x * h + f64::from(self.width) - 1.0) / 2.0, (h - 1.0 - position.y * h) / 2.0)
     }
 
-    /// The side of a pixel, 2 / H.
+    /// The height of a pixel, 2 / H.
     pub fn pixel_size(&self) -> f64 {
         2.0 / f64::from(self.height)
+    }
+
+    /// The width of a pixel and its height, 2a / H and 2 / H.
+    pub fn pixel_sides(&self) -> DVec2 {
+        DVec2::new(self.pixel_aspect, 1.0) * self.pixel_size()
+    }
+
+    /// Half the picture's width on the picture plane, a W / H; half its height is 1.
+    pub fn half_width(&self) -> f64 {
+        self.pixel_aspect * f64::from(self.width) / f64::from(self.height)
     }
 
     /// The smallest and the largest centre of the stored pixels, as (left bottom, right top).
@@ -98,8 +122,17 @@ mod tests {
     }
 
     #[test]
+    fn wide_pixels_spread_the_columns_and_nothing_else() {
+        let frame = Frame { pixel_aspect: 2.0, ..Frame::full(4, 2) };
+        assert_eq!(frame.position(0.0, 0.0), DVec2::new(-3.0, 0.5));
+        assert_eq!(frame.bounds(), (DVec2::new(-3.0, -0.5), DVec2::new(3.0, 0.5)));
+        assert_eq!((frame.pixel_sides(), frame.half_width()), (DVec2::new(2.0, 1.0), 4.0));
+        assert_eq!(frame.pixel(DVec2::new(3.0, -0.5)), DVec2::new(3.0, 1.0));
+    }
+
+    #[test]
     fn pixel_undoes_position_also_outside_the_picture() {
-        let frame = Frame::full(1921, 1081);
+        let frame = Frame { pixel_aspect: 1.25, ..Frame::full(1921, 1081) };
         for (i, j) in [(0.0, 0.0), (1920.0, 1080.0), (-300.25, 2000.5)] {
             let back = frame.pixel(frame.position(i, j));
             assert!((back - DVec2::new(i, j)).length() < 1e-9, "{back}");

@@ -386,7 +386,7 @@ impl Renderer {
         let Some((_, plan)) = &self.scene else { return Err(Error::Gl("the renderer has no scene".into())) };
         let (runner, spectrum, evaluators) = (&self.runner, &self.spectrum, &mut self.evaluators);
         if plan.evaluator == Evaluator::Direct || plan.summed() > 0 {
-            evaluators.direct([tile.x, tile.y], [frame.width as i32, frame.height as i32])?;
+            evaluators.direct([tile.x, tile.y], frame)?;
         }
         match plan.evaluator {
             Evaluator::Direct => {}

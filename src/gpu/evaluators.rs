@@ -11,6 +11,7 @@ use super::layout::{
 use super::resource::{Buffer, Scratch, Texel};
 use super::runner::Runner;
 use super::spectrum::Spectrum;
+use crate::frame::Frame;
 use crate::{Error, Result};
 
 /// Where there are many ghosts, `direct` sums this many of them in a round of its loop; as in `evaluators/direct.glsl`.
@@ -84,11 +85,12 @@ impl Evaluators {
         self.ghosts.store(&padded)
     }
 
-    /// Readies `direct` for a tile whose first pixel is `corner` in a picture of `size` pixels.
-    pub fn direct(&mut self, corner: [i32; 2], size: [i32; 2]) -> Result<()> {
-        let unit = (1.0 / f64::from(size[1])) as f32;
+    /// Readies `direct` for a tile whose first pixel is `corner` in the picture of a frame.
+    pub fn direct(&mut self, corner: [i32; 2], frame: Frame) -> Result<()> {
+        let size = [frame.width as i32, frame.height as i32];
+        let [x, y] = (0.5 * frame.pixel_sides()).to_array().map(|half| (half as f32).to_bits() as i32);
         let count = self.ghost_count as i32;
-        self.direct.store(&[[corner[0], corner[1], size[0], size[1], count, unit.to_bits() as i32, 0, 0]])?;
+        self.direct.store(&[[corner[0], corner[1], size[0], size[1], count, 0, x, y]])?;
         self.direct.bind_uniform(DIRECT);
         if self.many {
             self.ghosts.bind_storage(GHOSTS);

@@ -59,7 +59,7 @@ impl Graf {
             folded: Scratch::default(),
             angles: Buffer::new(device, 0)?,
             spectrum: Buffer::new(device, 0)?,
-            uniforms: Buffer::new(device, 2)?,
+            uniforms: Buffer::new(device, 3)?,
             evaluator: Buffer::new(device, 2)?,
             orders: 1,
         })
@@ -109,12 +109,13 @@ impl Graf {
     /// Pixels that mirror each other in the axes share a radius and all sums over m up to their signs, so these are
     /// done once, in the quadrant that the window is folded into.
     pub fn source(&mut self, runner: &Runner, frame: Frame, spacing: f64) -> Result<Source> {
-        let Frame { width, height, window } = frame;
+        let Frame { width, height, window, .. } = frame;
         let (x, y) = (folded(width, window.x, window.width), folded(height, window.y, window.height));
         let radii = self.radial.current().map_or(2, |texture| texture.level_height(0));
         let rate = (1.0 / spacing) as f32;
         let first = [x.0, y.0, 1 - width % 2, 1 - height % 2];
-        self.uniforms.store(&[first, [rate.to_bits(), self.orders, radii - 2, height]])?;
+        let unit = (0.5 * frame.pixel_sides()).to_array().map(|half| (half as f32).to_bits());
+        self.uniforms.store(&[first, [rate.to_bits(), self.orders, radii - 2, 0], [unit[0], unit[1], 0, 0]])?;
         self.uniforms.bind_uniform(PASS);
         let texture = self.folded.get(runner.device(), Texel::Rgba, x.1 - x.0 + 1, y.1 - y.0 + 1)?;
         runner.draw("graf_folded.frag", &[], texture, 0)?;

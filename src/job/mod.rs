@@ -172,7 +172,7 @@ impl<'a> Job<'a> {
     /// none either.
     ///
     /// # Errors
-    /// Where there is no plan, or the driver refuses; [`Error::Cancelled`].
+    /// Where there is no plan, or the driver refuses; [`Error::NotFinite`]; [`Error::Cancelled`].
     pub fn compute(&mut self, computer: Option<&mut Computer>, wanted: Wanted, watch: &impl Watch) -> Result<()> {
         if let Some(computer) = computer.filter(|_| self.look.renders()) {
             return self.render(computer, wanted, watch);
@@ -197,6 +197,8 @@ impl<'a> Job<'a> {
         self.info = Some(computer.info.clone());
         self.warnings.extend(self.absurd(&planned.plan));
 
+        // What is not finite in the photo already is no fault of the glare's.
+        let before = if self.bad.nan + self.bad.infinite > 0 { photo::not_finite(&self.photo.pixels) } else { 0 };
         begin(watch, "computing the glare")?;
         let renderer = match &mut computer.renderer {
             Some(renderer) => renderer,
@@ -209,7 +211,19 @@ impl<'a> Job<'a> {
 
         self.certify(renderer, &planned, wanted.verify, watch)?;
         self.planned = Some(planned);
-        renderer.collect(pending, &mut self.photo.pixels)
+        renderer.collect(pending, &mut self.photo.pixels)?;
+        self.stays_finite(before)
+    }
+
+    /// An error where the picture is not finite though the photo is, but for `before` pixels, or where the glare is not.
+    fn stays_finite(&self, before: usize) -> Result<()> {
+        let certificate = self.certificate.as_ref().map_or(0, |certificate| certificate.not_finite);
+        let picture = photo::not_finite(&self.photo.pixels).saturating_sub(before);
+        let glare = self.glare.as_deref().map_or(0, photo::not_finite);
+        match picture.max(glare).max(certificate) {
+            0 => Ok(()),
+            pixels => Err(Error::NotFinite { pixels }),
+        }
     }
 
     /// Draws the picture, some of which may still be on its way back then.

@@ -43,6 +43,14 @@ impl BadPixels {
     }
 }
 
+/// How many of the pixels have a colour channel that is NaN or infinite; alpha does not count.
+pub(crate) fn not_finite(pixels: &[[f32; 4]]) -> usize {
+    let count = |row: &[[f32; 4]]| {
+        row.iter().filter(|[r, g, b, _]| !(r + g + b).is_finite() && ![r, g, b].iter().all(|c| c.is_finite())).count()
+    };
+    pixels.par_chunks(1 << 14).map(count).sum()
+}
+
 /// Counts the bad pixels of a photo; alpha does not count.
 pub fn survey(photo: &Photo) -> BadPixels {
     let window = photo.frame.window;
@@ -76,6 +84,18 @@ fn survey_row(pixels: &[[f32; 4]], x: i32, y: i32) -> BadPixels {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn pixels_that_are_not_finite_are_counted_once_and_large_ones_are_finite() {
+        let most = f32::MAX;
+        let pixels = [
+            [most, most, -most, f32::NAN],
+            [f32::NAN, f32::INFINITY, 0.0, 1.0],
+            [0.0, 0.0, f32::NEG_INFINITY, 1.0],
+            [f32::INFINITY, f32::NEG_INFINITY, 1.0, 1.0],
+        ];
+        assert_eq!(not_finite(&pixels), 3);
+    }
 
     #[test]
     fn each_kind_is_counted_and_the_first_is_told() {

@@ -46,6 +46,7 @@ use std::sync::Arc;
 
 use glam::DMat3;
 
+pub(crate) use bad::not_finite;
 pub use bad::{BadKind, BadPixels, survey};
 pub use format::{Depth, Format};
 pub use lost::lost;
@@ -100,7 +101,7 @@ pub struct Source {
     pub display_referred: bool,
     /// The colours of (1,0,0), (0,1,0), (0,0,1) and (1,1,1), where they are not Rec.709's (scene-linear formats only).
     pub primaries: Option<Primaries>,
-    /// Width of a pixel over its height, > 0; 1 in most files.
+    /// Width of a pixel over its height as it is shown, > 0; 1 in most files. The frame of a photo that was read has it too.
     pub pixel_aspect: f64,
     /// What the picture is called in a file that holds several: a layer, a part, a page.
     pub picture: Option<String>,

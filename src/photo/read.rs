@@ -7,6 +7,7 @@ use std::path::Path;
 
 use super::{Format, Photo, Primaries, Reason, exr, jpeg, pfm, png, radiance, tiff};
 use crate::error::{Error, Result};
+use crate::frame::Frame;
 
 /// The most pixels that a photo may have, 2^29: 8 GiB in memory.
 pub const MAX_PIXELS: usize = 1 << 29;
@@ -53,6 +54,7 @@ pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Photo> {
         {
             photo.source.primaries = primaries.other_than_rec709();
         }
+        shape_pixels(&mut photo);
         Ok(photo)
     };
     // Decoders of foreign files are the one place where a panic is not a bug of ours.
@@ -61,6 +63,18 @@ pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Photo> {
         Ok(Err(reason)) => Err(Error::read_photo(path, explain(&*reason))),
         Err(_) => Err(Error::read_photo(path, "the file is damaged, and its decoder gave up")),
     }
+}
+
+/// Gives the picture the shape of its pixels, where that is one that pixels have.
+fn shape_pixels(photo: &mut Photo) {
+    let aspect = photo.source.pixel_aspect;
+    if Frame::PIXEL_ASPECTS.contains(&aspect) {
+        photo.frame.pixel_aspect = aspect;
+        return;
+    }
+    let note = format!("it says that a pixel is {aspect:e} times as wide as high; they are taken to be square");
+    photo.source.notes.push(note);
+    photo.source.pixel_aspect = 1.0;
 }
 
 fn decode(reader: Box<dyn Input>, format: Format, options: &ReadOptions) -> std::result::Result<Photo, Reason> {

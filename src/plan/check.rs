@@ -5,10 +5,18 @@ use rayon::prelude::*;
 
 use super::{HIGHEST_DEGREE, Request};
 use crate::scene::Ghost;
+use crate::series::{Bell, SineGaussian};
 use crate::{Error, Result};
 
 /// The brightest field: some way below what f32 ends at, because its largest value is known at some pixels only.
 const BRIGHTEST: f64 = 1e37;
+
+/// Periods, in half picture heights: from less than any pixel to where a phase of 32 bits tells nothing of the picture
+/// apart, by a wide margin; f32 has room for the waves of all of them.
+const PERIODS: [f64; 2] = [1e-6, 1e15];
+
+/// Where copies of the bells add up to so many times the field, the period is a mistake, and f32 has no room for the sum.
+const MOST_COPIES: f64 = 1e6;
 
 /// Refuses ghosts whose numbers mean nothing: every one of them would be lost without a word, or spoil all pixels.
 pub(super) fn ghosts(ghosts: &[Ghost]) -> Result<()> {
@@ -19,6 +27,11 @@ pub(super) fn ghosts(ghosts: &[Ghost]) -> Result<()> {
             Some(format!(
                 "sizes of {:e} x {:e}, and each has to be from {smallest:.1e} to {largest:.1e}",
                 ghost.size.x, ghost.size.y
+            ))
+        } else if let Some(least) = too_narrow(ghost) {
+            Some(format!(
+                "sizes of {:e} x {:e}, and a {} bell is at least {:.1e} x {:.1e} in its period",
+                ghost.size.x, ghost.size.y, ghost.bell, least.x, least.y
             ))
         } else if ghost.center.is_nan() || ghost.center.abs().max_element() > largest {
             Some(format!("its centre at ({:e}, {:e}), beyond what 32-bit floats hold", ghost.center.x, ghost.center.y))
@@ -31,12 +44,38 @@ pub(super) fn ghosts(ghosts: &[Ghost]) -> Result<()> {
     first.map_or(Ok(()), |(index, wrong)| Err(Error::Plan(format!("ghost {} has {wrong}", index + 1))))
 }
 
-/// Refuses a period or a degree that no series has.
-pub(super) fn request(request: &Request) -> Result<()> {
-    let period = request.period.unwrap_or(DVec2::ONE);
-    if !(period.is_finite() && period.min_element() > 0.0) {
-        return Err(Error::Plan(format!("a period of {} x {} is none", period.x, period.y)));
+/// The least sizes that the ghost's bell may have, where it is too narrow.
+fn too_narrow(ghost: &Ghost) -> Option<DVec2> {
+    let Bell::SineGaussian(bell) = &ghost.bell else { return None };
+    let least = SineGaussian::NARROWEST * bell.period;
+    ghost.size.cmplt(least).any().then_some(least)
+}
+
+/// Refuses a period that no series has.
+pub(super) fn period(period: DVec2) -> Result<()> {
+    let [least, most] = PERIODS;
+    if [period.x, period.y].iter().all(|period| (least..=most).contains(period)) {
+        return Ok(());
     }
+    Err(Error::Plan(format!(
+        "a period of {:e} x {:e}, and each has to be from {least:e} to {most:e} half picture heights",
+        period.x, period.y
+    )))
+}
+
+/// Refuses a period in which the bells' copies drown the field; `error` is what they add, relative to it.
+pub(super) fn copies(period: DVec2, error: f64) -> Result<()> {
+    if error <= MOST_COPIES {
+        return Ok(());
+    }
+    Err(Error::Plan(format!(
+        "a period of {:e} x {:e} is too short: the bells' copies would add up to {error:.0e} times the glare",
+        period.x, period.y
+    )))
+}
+
+/// Refuses a degree that no series has.
+pub(super) fn request(request: &Request) -> Result<()> {
     match request.degree {
         Some([n, m]) if n.max(m) > HIGHEST_DEGREE => {
             Err(Error::Plan(format!("a degree of {n} x {m}, and {HIGHEST_DEGREE} is the highest")))

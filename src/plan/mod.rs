@@ -232,6 +232,7 @@ pub fn plan(ghosts: &[Ghost], asked: &Request) -> Result<Plan> {
     check::request(asked)?;
     check::ghosts(ghosts)?;
     let request = &Request { period: own_period(ghosts, asked)?, ..*asked };
+    request.period.map_or(Ok(()), check::period)?;
     let survey = Survey::new(ghosts, request);
     check::scale(survey.weighed.scale)?;
     // A period or a degree asks for a series.

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::amplitudes::{self, Amplitudes};
 use super::lattice::{self, Marginals};
-use super::{Evaluator, Group, Plan, Prediction, Request, Survey, cost, gather, period, rounding, share, terms};
+use super::{Evaluator, Group, Plan, Prediction, Request, Survey, check, cost, gather, period, rounding, share, terms};
 use crate::scene::Ghost;
 use crate::{Error, Result};
 
@@ -78,6 +78,7 @@ pub(super) fn plan_series(
     };
     plan.predicted.periodisation =
         wide.map_or_else(|| period::error(&survey.reaches, plan.period), |w| w.periodisation);
+    check::copies(plan.period, plan.predicted.periodisation)?;
     let excess = excess(plan, usable);
     if plan.evaluator != Evaluator::Grid {
         plan_terms(plan, wide, request, usable * share::TRUNCATION - excess)?;

@@ -108,7 +108,7 @@ impl Lookup {
     /// Tables that reach every pixel and every ghost, with no side above `texture_size`.
     fn new(scene: &GrafScene<'_>, frame: Frame, texture_size: u32) -> Self {
         let (low, high) = frame.bounds();
-        let reach = low.abs().max(high.abs()).length().max(frame.pixel_size());
+        let reach = low.abs().max(high.abs()).length().max(frame.pixel_sides().max_element());
         let farthest = scene.spots.iter().map(|spot| spot.center.length()).fold(reach, f64::max);
         let fastest = scene.series.terms.last().map_or(1.0, |term| term.alpha) / scene.series.radius;
         // Three to spare: for the last pixel's own rounding, and because steps have two ends.

@@ -52,12 +52,12 @@ impl Nodes {
     pub fn new(lattice: &Lattice, period: DVec2, frame: Frame, tile: Window) -> Self {
         // The lattice hangs from the window's top left pixel, whichever tile asks.
         let origin = frame.position(f64::from(frame.window.x), f64::from(frame.window.y));
-        let pixel = frame.pixel_size();
-        let [pitch_x, pitch_y] = [lattice.step.x, lattice.step.y].map(|step| Pitch::new(pixel / step));
+        let pixel = frame.pixel_sides();
+        let [pitch_x, pitch_y] = (pixel / lattice.step).to_array().map(Pitch::new);
         let columns = pitch_x.span(tile.x - frame.window.x, tile.width);
         let rows = pitch_y.span(tile.y - frame.window.y, tile.height);
         // The step that the pitch stands for exactly; it differs from the plan's by rounding.
-        let step = DVec2::new(pixel / pitch_x.nodes(), pixel / pitch_y.nodes());
+        let step = pixel / DVec2::new(pitch_x.nodes(), pitch_y.nodes());
         let node_phases = |span: &Span, position: &dyn Fn(f64) -> f64, period: f64| {
             phases(span.nodes, |index| position(span.first as f64 + index - 1.0), period)
         };

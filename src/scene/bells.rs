@@ -8,6 +8,7 @@ use glam::DVec2;
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::file::contents;
 use super::number::Finite;
 use crate::series::{Bell, Profile, SineGaussian, VonMises};
 
@@ -136,13 +137,13 @@ fn spelt(name: &Spanned<BellName>) -> &'static str {
 /// may be a heading.
 fn read_rows(path: &Path) -> Result<Vec<[f64; 2]>, String> {
     let named = |reason: &dyn std::fmt::Display| format!("the profile {} {reason}", path.display());
+    let bytes = contents(path).map_err(|reason| named(&reason))?;
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
         .comment(Some(b'#'))
         .trim(csv::Trim::All)
-        .from_path(path)
-        .map_err(|error| named(&format_args!("cannot be read: {error}")))?;
+        .from_reader(&*bytes);
     let mut rows = Vec::new();
     for (index, record) in reader.records().enumerate() {
         let record = record.map_err(|error| named(&format_args!("cannot be read: {error}")))?;

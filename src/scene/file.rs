@@ -50,6 +50,7 @@
 //! and `[[lens_ghost]]` only, a light file `[[light]]` only; a light file may also be what `vglare lights --json` prints.
 
 use std::fs;
+use std::io::Read as _;
 use std::ops::Range;
 use std::path::Path;
 
@@ -169,8 +170,31 @@ fn converted<T: Into<U>, U>(tables: Vec<T>) -> Vec<U> {
     tables.into_iter().map(Into::into).collect()
 }
 
+/// The most that a scene, lens, light or profile file may hold: some 100,000 lights.
+const MOST_BYTES: u64 = 16 << 20;
+
+/// What a file holds.
+///
+/// # Errors
+/// Why it cannot be read, for people: also where it is no regular file, which may have no end, or where it is too long.
+pub(super) fn contents(path: &Path) -> Result<Vec<u8>, String> {
+    let told = |error: std::io::Error| format!("cannot be read: {error}");
+    // Before it is opened: opening a pipe waits for someone to write to it.
+    let kind = fs::metadata(path).map_err(told)?.file_type();
+    if !kind.is_file() {
+        let what = if kind.is_dir() { "a folder" } else { "a pipe or a device" };
+        return Err(format!("cannot be read: it is {what}, and vglare reads regular files only"));
+    }
+    let mut bytes = Vec::new();
+    fs::File::open(path).and_then(|file| file.take(MOST_BYTES + 1).read_to_end(&mut bytes)).map_err(told)?;
+    match bytes.len() as u64 {
+        0..=MOST_BYTES => Ok(bytes),
+        _ => Err(format!("cannot be read: it is larger than {} MiB", MOST_BYTES >> 20)),
+    }
+}
+
 fn text(path: &Path) -> Result<String> {
-    let bytes = fs::read(path).map_err(|e| Error::scene_file(path, format_args!("cannot be read: {e}")))?;
+    let bytes = contents(path).map_err(|reason| Error::scene_file(path, reason))?;
     String::from_utf8(bytes).map_err(|e| {
         let line = 1 + e.as_bytes()[..e.utf8_error().valid_up_to()].iter().filter(|&&b| b == b'\n').count();
         Error::scene_file(path, format_args!("line {line}: this is not UTF-8 text"))

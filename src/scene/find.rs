@@ -90,15 +90,15 @@ pub fn find(pixels: &[[f32; 4]], frame: &Frame, emission: impl Into<Emission>, o
         Some(given) => (given, Rule::Given),
         None => threshold::automatic(&lit),
     };
-    let mut found = regions(&lit, threshold as f32);
+    let mut found = regions(&lit, threshold as f32, frame.pixel_aspect);
     let survey = lit.survey(threshold as f32);
     let regions = found.len();
     let total = found.iter().map(|region| region.weight).sum::<f64>().max(f64::MIN_POSITIVE);
     found.sort_by(brightest_first);
     // No two pixels are farther apart than a diagonal.
-    let radius =
-        (options.merge / frame.pixel_size()).min(f64::from(frame.window.width) + f64::from(frame.window.height));
-    let mut lights = merge(found, radius, pixels.len());
+    let diagonal = frame.pixel_aspect * f64::from(frame.window.width) + f64::from(frame.window.height);
+    let radius = (options.merge / frame.pixel_size()).min(diagonal);
+    let mut lights = merge(found, radius, pixels.len() as f64 * frame.pixel_aspect);
     lights.sort_by(brightest_first);
     let dropped = lights.split_off(options.max_lights.min(lights.len()));
     Found {
@@ -123,13 +123,14 @@ fn brightest_first(a: &Moments, b: &Moments) -> Ordering {
 
 /// From pixels of the window to the picture plane.
 fn light(region: &Moments, frame: &Frame) -> Light {
-    let side = frame.pixel_size();
-    let (column, row) = (f64::from(frame.window.x) + region.mean.x, f64::from(frame.window.y) + region.mean.y);
-    // A pixel is a square of light and no point: 1/12 is the variance of a uniform density of width 1.
-    let variance = region.variance() + 1.0 / 12.0;
+    let (side, aspect) = (frame.pixel_size(), frame.pixel_aspect);
+    let column = f64::from(frame.window.x) + region.mean.x / aspect;
+    let row = f64::from(frame.window.y) + region.mean.y;
+    // A pixel is a rectangle of light and no point: 1/12 is the variance of a uniform density of width 1.
+    let variance = region.variance() + (aspect * aspect + 1.0) / 24.0;
     Light {
         position: frame.position(column, row),
-        flux: region.flux.map(|sum| sum * side * side),
+        flux: region.flux.map(|sum| sum * frame.pixel_sides().element_product()),
         size: variance.sqrt() * side,
         muted: false,
     }
@@ -137,14 +138,15 @@ fn light(region: &Moments, frame: &Frame) -> Light {
 
 /// Lets each region, brightest first, join the nearest one kept so far that it is close to, or keeps it.
 ///
-/// A region is close to a kept one if its centroid is within `radius` pixels of the disc that has the kept one's
+/// A region is close to a kept one if its centroid is within `radius` heights of a pixel of the disc that has the kept one's
 /// centroid and rms extent, so that the panes of a window come together. The disc is that of the kept region alone
-/// and does not grow, so that a light does not wander off along a string of lamps.
-fn merge(regions: Vec<Moments>, radius: f64, pixels: usize) -> Vec<Moments> {
+/// and does not grow, so that a light does not wander off along a string of lamps. `area` is that of the window, in
+/// squares of a pixel's height.
+fn merge(regions: Vec<Moments>, radius: f64, area: f64) -> Vec<Moments> {
     if radius.is_nan() || radius <= 0.0 || regions.is_empty() {
         return regions;
     }
-    let mut cells = Cells::new(radius.max((pixels as f64 / regions.len() as f64).sqrt()));
+    let mut cells = Cells::new(radius.max((area / regions.len() as f64).sqrt()));
     let (mut kept, mut discs): (Vec<Moments>, Vec<(DVec2, f64)>) = Default::default();
     for region in regions {
         let distance = |&at: &usize| discs[at].0.distance(region.mean);

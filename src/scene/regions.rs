@@ -13,7 +13,8 @@ use rayon::prelude::*;
 use super::emission::Emission;
 use super::lit::Lit;
 
-/// Sums over pixels of light. Positions are columns and rows of the stored window, areas are pixels.
+/// Sums over pixels of light. Positions are columns and rows of the stored window, columns times the pixels' aspect, so that
+/// a pixel's height is the unit of both; areas are pixels.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Moments {
     /// Sum of radiance, RGB, as much as its pixel gives of it.
@@ -45,8 +46,8 @@ impl Moments {
         self.spread / (2.0 * self.weight)
     }
 
-    /// Of neighbouring pixels in a row, the first of which is in column `i`.
-    fn of_run(pixels: &[[f32; 4]], emission: Emission, i: usize, j: usize) -> Self {
+    /// Of neighbouring pixels in row `j`, the first of which is in column `i`; `aspect` is a pixel's width over its height.
+    fn of_run(pixels: &[[f32; 4]], emission: Emission, i: usize, j: usize, aspect: f64) -> Self {
         let (mut flux, mut sums) = ([0.0; 3], [0.0; 3]);
         for (k, pixel) in pixels.iter().enumerate() {
             let (l, k) = (f64::from(emission.luminance(pixel)), k as f64);
@@ -57,8 +58,8 @@ impl Moments {
             flux.iter_mut().zip(pixel).for_each(|(sum, &c)| *sum += share * f64::from(c.max(0.0)));
         }
         let offset = sums[1] / sums[0];
-        let mean = DVec2::new(i as f64 + offset, j as f64);
-        Self { flux, weight: sums[0], mean, spread: (sums[2] - sums[1] * offset).max(0.0) }
+        let mean = DVec2::new(aspect * (i as f64 + offset), j as f64);
+        Self { flux, weight: sums[0], mean, spread: aspect * aspect * (sums[2] - sums[1] * offset).max(0.0) }
     }
 }
 
@@ -79,9 +80,9 @@ impl Run {
 
 /// Every region of pixels at or above `threshold`, in the order of their first pixels.
 ///
-/// Black pixels are in none, whatever the threshold, and neither are fireflies.
-pub(super) fn regions(lit: &Lit<'_>, threshold: f32) -> Vec<Moments> {
-    stitch(lit.bands().map(|rows| Band::new(lit, rows, threshold)).collect())
+/// Black pixels are in none, whatever the threshold, and neither are fireflies. `aspect` is a pixel's width over its height.
+pub(super) fn regions(lit: &Lit<'_>, threshold: f32, aspect: f64) -> Vec<Moments> {
+    stitch(lit.bands().map(|rows| Band::new(lit, rows, threshold, aspect)).collect())
 }
 
 /// Some rows of the picture: their regions, and the runs of the first and the last row.
@@ -92,7 +93,7 @@ struct Band {
 }
 
 impl Band {
-    fn new(lit: &Lit<'_>, rows: Range<usize>, threshold: f32) -> Self {
+    fn new(lit: &Lit<'_>, rows: Range<usize>, threshold: f32, aspect: f64) -> Self {
         let mut regions = Regions::default();
         let (mut first, mut above, mut runs) = (Vec::new(), Vec::new(), Vec::new());
         for j in rows.clone() {
@@ -100,7 +101,7 @@ impl Band {
             runs.clear();
             let mut touched = 0;
             each_run(lit, j, threshold, |start, end| {
-                let moments = Moments::of_run(&row[start..end], lit.emission(), start, j);
+                let moments = Moments::of_run(&row[start..end], lit.emission(), start, j, aspect);
                 let run = Run { start: start as u32, end: end as u32, region: 0 };
                 runs.push(Run { region: regions.add(&run, &moments, &above, &mut touched), ..run });
             });
@@ -225,7 +226,7 @@ mod tests {
     const EMISSION: Emission = Emission { weights: [0.25, 0.5, 0.25], straight: false };
 
     fn regions(pixels: &[[f32; 4]], width: usize, threshold: f32) -> Vec<Moments> {
-        super::regions(&Lit::new(pixels, width, EMISSION, 0.0), threshold)
+        super::regions(&Lit::new(pixels, width, EMISSION, 0.0), threshold, 1.0)
     }
 
     /// Regions of a picture drawn with digits, each the radiance of its pixel.
@@ -247,7 +248,7 @@ mod tests {
                     continue;
                 }
                 let (i, j) = (p % width, p / width);
-                moments.absorb(&Moments::of_run(&pixels[p..=p], EMISSION, i, j));
+                moments.absorb(&Moments::of_run(&pixels[p..=p], EMISSION, i, j, 1.0));
                 for y in j.saturating_sub(1)..(j + 2).min(height) {
                     queue.extend((i.saturating_sub(1)..(i + 2).min(width)).map(|x| y * width + x));
                 }

@@ -4,6 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use super::cosine_squared::CosineSquared;
 use super::gaussian::Gaussian;
@@ -188,7 +189,8 @@ impl Modes<'_> {
                     let z = (turn * DVec2::new(f64::from(n), f64::from(m))).length();
                     [kappa(n, m) * volume * radial.transform(z), 0.0, 0.0, 0.0]
                 };
-                modes(counts).map(coefficient).collect()
+                // A profile may have thousands of rows, and each mode asks all of them.
+                modes(counts).collect::<Vec<_>>().into_par_iter().map(coefficient).collect()
             }
         }
     }

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI, SQRT_2, TAU};
 use glam::DVec2;
 
 use super::bell::{Factor, Modes, Shape};
-use super::tails::{copies, summed};
+use super::tails::{NARROWEST, copies, narrow, summed};
 
 pub(super) struct CosineSquared;
 
@@ -85,10 +85,13 @@ impl Factor for CosineSquared {
     /// The envelope summed, and beyond some harmonic its integral ln(s²/(s² − 1)) / 2π.
     fn tails(&self, highest: u32, size: f64) -> Vec<f64> {
         // Where s is 2 at least, and the integral close to the sum.
-        let last = highest.max((1.0 / size).min(1e6).ceil() as u32 + 1);
-        let s = 2.0 * f64::from(last) * size;
-        let remainder = if s > 1.0 { -(-1.0 / (s * s)).ln_1p() / TAU } else { f64::INFINITY };
-        summed(highest, last, remainder, |n| 2.0 * Self::envelope(n, size))
+        let close = 1.0 / size + 1.0;
+        let integral = |n: f64| -(-(2.0 * n * size).powi(-2)).ln_1p() / TAU;
+        if size < NARROWEST {
+            return narrow(highest, close, 2.0 * SQRT_2 * size, integral);
+        }
+        let last = highest.max(close.ceil() as u32);
+        summed(highest, last, integral(f64::from(last)), |n| 2.0 * Self::envelope(n, size))
     }
 
     fn mean(&self, size: f64) -> f64 {

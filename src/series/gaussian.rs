@@ -49,7 +49,9 @@ impl Shape for Gaussian {
     fn wrap(&self, period: f64, distance: f64, size: f64) -> f64 {
         let gap = (period - distance) / size;
         let ratio = period * (3.0 * period - 2.0 * distance) / (size * size);
-        2.0 * (-0.5 * gap * gap).exp() / -(-0.5 * ratio).exp_m1()
+        let nearest = 2.0 * (-0.5 * gap * gap).exp();
+        // Of very wide bells the quotient is 0/0; no sum of samples a period apart is beyond the first and the integral.
+        (nearest / -(-0.5 * ratio).exp_m1()).min(nearest + SQRT_TAU * size / period)
     }
 
     /// d exp(−d²/2), which is steepest at a distance of 1, or where it begins.
@@ -94,8 +96,12 @@ impl Factor for Gaussian {
 
     /// As much as leaves the sum of all coefficients, which is the periodised peak, a bound for the largest size too.
     fn mean(&self, size: f64) -> f64 {
+        // From here on the copies add up to √(2π) σ/T, but for 1e-8 of that (Poisson's sum).
+        if size > 1.0 {
+            return SQRT_2 * wrapped_gaussian(0, size);
+        }
         let copies = |size: f64| -> f64 {
-            let reach = (9.0 * size).min(1e6) as i32;
+            let reach = (9.0 * size) as i32;
             (1..=reach).map(|j| 2.0 * self.along(f64::from(j), size)).sum()
         };
         wrapped_gaussian(0, size) + (copies(SQRT_2 * size) - copies(size)).max(0.0)

@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use super::bell::{Factor, Modes, Shape};
 use super::special::parabola_kernel;
-use super::tails::{copies, summed};
+use super::tails::{NARROWEST, copies, narrow, summed};
 
 pub(super) struct Parabola;
 
@@ -69,10 +69,13 @@ impl Factor for Parabola {
 
     /// The envelope summed, and beyond some harmonic its integral (2T/π²hN)(1 + T/4πhN).
     fn tails(&self, highest: u32, size: f64) -> Vec<f64> {
-        let last = highest.max((1.0 / size).min(1e6).ceil() as u32);
-        let scaled = size * f64::from(last);
-        let remainder = 2.0 / (PI * PI * scaled) * (1.0 + 0.25 / (PI * scaled));
-        summed(highest, last, remainder, |n| 2.0 * Self::envelope(n, size))
+        let close = 1.0 / size;
+        let integral = |n: f64| 2.0 / (PI * PI * size * n) * (1.0 + 0.25 / (PI * size * n));
+        if size < NARROWEST {
+            return narrow(highest, close, 8.0 / 3.0 * SQRT_2 * size, integral);
+        }
+        let last = highest.max(close.ceil() as u32);
+        summed(highest, last, integral(f64::from(last)), |n| 2.0 * Self::envelope(n, size))
     }
 
     fn mean(&self, size: f64) -> f64 {

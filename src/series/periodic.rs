@@ -3,6 +3,8 @@
 use std::f64::consts::{PI, SQRT_2, TAU};
 
 use glam::DVec2;
+use num_complex::Complex64;
+use rustfft::FftPlanner;
 
 use super::bell::{Factor, Modes, Shape};
 use super::special::ive_all;
@@ -24,6 +26,11 @@ pub struct SineGaussian {
     pub period: DVec2,
     /// μ, the sine that it is brightest at; from −1 to 1.
     pub mean: f64,
+}
+
+impl SineGaussian {
+    /// The narrowest, in periods: its coefficients come from samples, a few for each size.
+    pub const NARROWEST: f64 = 2e-5;
 }
 
 /// A bell that is a product of one periodic factor for each axis.
@@ -94,22 +101,19 @@ fn samples(highest: u32, size: f64) -> u32 {
     (needed as u32).next_power_of_two()
 }
 
-/// a_n and b_n of a smooth function of period 1 by the trapezium rule, which converges faster than any power.
+/// a_n and b_n of a smooth function of period 1 by the trapezium rule, which converges faster than any power; `highest` is
+/// below `samples`.
 fn by_samples(highest: u32, samples: u32, function: impl Fn(f64) -> f64) -> Vec<[f64; 2]> {
-    let turn = |i: u32| f64::from(i) / f64::from(samples);
-    let values: Vec<f64> = (0..samples).map(|i| function(turn(i))).collect();
-    let circle: Vec<(f64, f64)> = (0..samples).map(|i| (TAU * turn(i)).sin_cos()).collect();
-    let coefficient = |n: u32| {
-        let mut sum = [0.0; 2];
-        for (i, value) in (0..samples).zip(&values) {
-            // A power of two samples: the remainder is a mask, and wrapping does no harm.
-            let (sin, cos) = circle[(n.wrapping_mul(i) & (samples - 1)) as usize];
-            sum[0] += value * cos;
-            sum[1] += value * sin;
-        }
-        sum.map(|sum| sum / f64::from(samples))
-    };
-    (0..=highest).map(coefficient).collect()
+    let values = (0..samples).map(|i| function(f64::from(i) / f64::from(samples)));
+    let mean = |sum: f64| sum / f64::from(samples);
+    if highest == 0 {
+        return vec![[mean(values.sum()), 0.0]];
+    }
+    let mut waves: Vec<Complex64> = values.map(Complex64::from).collect();
+    FftPlanner::new().plan_fft_forward(waves.len()).process(&mut waves);
+    waves.truncate(highest as usize + 1);
+    // Σ f e^(−2πinx) is Σ f cos − i Σ f sin.
+    waves.into_iter().map(|wave| [mean(wave.re), mean(-wave.im)]).collect()
 }
 
 impl<B: Periodic> Shape for B {
@@ -170,11 +174,13 @@ impl<B: Periodic> Factor for B {
         Periodic::coefficients(self, highest, size)
     }
 
-    /// The sum of |a_n + i b_n| to where nothing is left.
+    /// The sum of |a_n + i b_n| to where nothing is left. Of a bell too narrow for that it is the rest of all that a von
+    /// Mises bell has, its peak; the others are not that narrow ([`SineGaussian::NARROWEST`]).
     fn tails(&self, highest: u32, size: f64) -> Vec<f64> {
-        let last = highest + (2.0 / size).min(1e5) as u32;
+        let (needed, most) = (2.0 / size, 2.0 / SineGaussian::NARROWEST);
+        let (last, rest) = (highest + needed.min(most) as u32, if needed > most { 1.0 } else { 0.0 });
         let coefficients = Periodic::coefficients(self, last, size);
-        summed(highest, last, 0.0, |n| {
+        summed(highest, last, rest, |n| {
             let [a, b] = coefficients[n as usize];
             2.0 * a.hypot(b)
         })

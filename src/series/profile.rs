@@ -5,23 +5,28 @@
 //! therefore a sum of theirs, exact for the profile as it is understood here.
 
 use std::f64::consts::{PI, TAU};
+use std::sync::OnceLock;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use super::bell::{Modes, Radial, Shape};
 use super::paraboloid::cut_off;
-use super::special::{bessel_j, paraboloid_kernel};
+use super::special::{bessel_j, paraboloid_cubics, paraboloid_kernel};
 use super::tails::copies;
 
 /// Most rows of a table.
 pub const MOST_ROWS: usize = 4096;
+
+/// Radii, but for 0, in sizes: their squares, and one over these, are f32 on the GPU.
+const RADII: [f64; 2] = [1e-15, 1e15];
 
 /// Steps of the table of what lies beyond a frequency: their width times the profile's radius, and how many there are.
 const STEP: f64 = 0.25;
 const STEPS: usize = 4000;
 
 /// A radial profile. Its radii are in sizes; beyond the last it is 0.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Profile {
     /// From 0 on, ascending.
     radii: Vec<f64>,
@@ -31,8 +36,19 @@ pub struct Profile {
     slopes: Vec<f64>,
     /// The largest absolute value from each row on.
     reach: Vec<f64>,
-    /// ∫ |ĝ|, and ∫ z |ĝ|, from each step on, with the largest |ĝ| from there on.
-    beyond: Vec<[f64; 2]>,
+    /// ĝ(0), and the mean square distance from the centre along an axis.
+    volume: f64,
+    variance: f64,
+    /// ∫ |ĝ|, and ∫ z |ĝ|, from each step on, with the largest |ĝ| from there on: only a series needs it, and it takes its
+    /// time.
+    beyond: OnceLock<Vec<[f64; 2]>>,
+}
+
+/// Everything else follows from the rows.
+impl PartialEq for Profile {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self, other) || (self.radii == other.radii && self.values == other.values)
+    }
 }
 
 impl Profile {
@@ -40,8 +56,8 @@ impl Profile {
     /// are divided by the largest of them.
     ///
     /// # Errors
-    /// What is wrong with the rows, for people: radii that do not ascend, fewer than two rows or more than
-    /// [`MOST_ROWS`], numbers that are not finite, nothing but zeros.
+    /// What is wrong with the rows, for people: radii that do not ascend, that are beyond 1e15 or, but for 0, below 1e-15,
+    /// fewer than two rows or more than [`MOST_ROWS`], numbers that are not finite, nothing but zeros.
     pub fn new(rows: &[[f64; 2]]) -> Result<Self, String> {
         if rows.len() < 2 || rows.len() > MOST_ROWS {
             return Err(format!("a profile has 2 to {MOST_ROWS} rows, and this one has {}", rows.len()));
@@ -52,6 +68,19 @@ impl Profile {
         }
         if let Some(row) = rows.windows(2).position(|pair| pair[1][0] <= pair[0][0]) {
             return Err(format!("the profile's radii do not ascend at row {}", row + 2));
+        }
+        let [least, most] = RADII;
+        let held = |radius: f64| radius == 0.0 || (least..=most).contains(&radius);
+        if let Some(row) = rows.iter().position(|row| !held(row[0])) {
+            let radius = rows[row][0];
+            return Err(format!(
+                "row {} of the profile has the radius {radius:e}, and radii go from {least:e} to {most:e}",
+                row + 1
+            ));
+        }
+        // Squares of radii that are too close to each other are the same to the last bit.
+        if let Some(row) = rows.windows(2).position(|pair| (pair[1][0] - pair[0][0]) < 1e-7 * pair[1][0]) {
+            return Err(format!("the profile's radii are closer than 1e-7 of themselves at row {}", row + 2));
         }
         let peak = rows.iter().fold(0.0f64, |peak, row| peak.max(row[1].abs()));
         if peak == 0.0 {
@@ -75,8 +104,9 @@ impl Profile {
         for i in (1..reach.len()).rev() {
             reach[i - 1] = reach[i - 1].max(reach[i]);
         }
-        let mut profile = Self { radii, values, slopes, reach, beyond: Vec::new() };
-        profile.beyond = profile.integrals();
+        let mut profile = Self { radii, values, slopes, reach, volume: 0.0, variance: 0.0, beyond: OnceLock::new() };
+        profile.volume = profile.transform(0.0);
+        profile.variance = profile.mean_square();
         profile
     }
 
@@ -119,11 +149,21 @@ impl Profile {
         self.values[self.values.len() - 1]
     }
 
+    /// π ∫ r³ g dr over the integral; 0 where that is negative, which no light that spreads has.
+    fn mean_square(&self) -> f64 {
+        let part = |i: usize| {
+            let [near, far] = [self.radii[i], self.radii[i + 1]];
+            let constant = self.values[i] - self.slopes[i] * near * near;
+            constant * (far.powi(4) - near.powi(4)) / 4.0 + self.slopes[i] * (far.powi(6) - near.powi(6)) / 6.0
+        };
+        let moment: f64 = (0..self.radii.len() - 1).map(part).sum();
+        (PI * moment / self.volume).max(0.0)
+    }
+
     /// ∫ M dz and ∫ z M dz from each step of z on, where M is the largest |ĝ| from there on.
     fn integrals(&self) -> Vec<[f64; 2]> {
         let width = STEP / self.radius();
-        // ĝ has nothing faster than the radius in it, so between steps it is hardly larger than at them.
-        let sampled: Vec<f64> = (0..=STEPS).map(|i| 1.05 * self.transform(width * i as f64).abs()).collect();
+        let sampled = self.sampled();
         let mut beyond = vec![[0.0; 2]; STEPS + 1];
         let mut largest = sampled[STEPS];
         for i in (0..STEPS).rev() {
@@ -132,6 +172,39 @@ impl Profile {
             beyond[i] = [next[0] + width * largest, next[1] + width * (i as f64 + 1.0) * width * largest];
         }
         beyond
+    }
+
+    /// A bound of |ĝ| at each step of z and as far as the middle of the next.
+    fn sampled(&self) -> Vec<f64> {
+        // By looking the kernel up: it is needed at every step for every row.
+        const FINE: f64 = 32.0;
+        const OFF: f64 = 1e-8;
+        let cubics = paraboloid_cubics(1.0 / FINE, (STEP * STEPS as f64 * FINE) as u32 + 2);
+        let kinks: Vec<[f64; 2]> =
+            self.kinks().map(|(radius, kink)| [radius / self.radius(), 0.25 * kink * radius.powi(4)]).collect();
+        let bound = |i: usize| {
+            let end = STEP * i as f64;
+            let (mut sum, mut off) = (0.0, 0.0);
+            for &[radius, weight] in &kinks {
+                let t = end * radius;
+                let cell = (t * FINE) as usize;
+                let [a, b, c, d] = cubics[cell];
+                let u = t * FINE - cell as f64;
+                sum += weight * (a + u * (b + u * (c + u * d)));
+                off += weight.abs();
+            }
+            // A cubic is off by 1/384 FINE⁴ of what the kernel's waves are, which fall as t^(−5/2).
+            let off = OFF * off * (8.0 * end.powf(-2.5)).min(1.0);
+            // ĝ has nothing faster than the radius in it, so between steps it is hardly larger than at them.
+            1.05 * TAU * ((self.stepped(end) + sum).abs() + off)
+        };
+        (0..=STEPS).into_par_iter().map(bound).collect()
+    }
+
+    /// What the step at the end adds to ĝ/2π, as a disc; `end` is z times the radius.
+    fn stepped(&self, end: f64) -> f64 {
+        let disc = if end < 1e-4 { 0.5 } else { bessel_j(1, end) / end };
+        self.step() * self.radius() * self.radius() * disc
     }
 
     /// What the kinks and the step leave beyond z.
@@ -174,18 +247,11 @@ impl Shape for Profile {
     }
 
     fn integral(&self, size: DVec2) -> f64 {
-        self.transform(0.0) * size.element_product()
+        self.volume * size.element_product()
     }
 
-    /// π ∫ r³ g dr over the integral; 0 where that is negative, which no light that spreads has.
     fn variance(&self) -> f64 {
-        let part = |i: usize| {
-            let [near, far] = [self.radii[i], self.radii[i + 1]];
-            let constant = self.values[i] - self.slopes[i] * near * near;
-            constant * (far.powi(4) - near.powi(4)) / 4.0 + self.slopes[i] * (far.powi(6) - near.powi(6)) / 6.0
-        };
-        let moment: f64 = (0..self.radii.len() - 1).map(part).sum();
-        (PI * moment / self.transform(0.0)).max(0.0)
+        self.variance
     }
 
     fn modes(&self) -> Modes<'_> {
@@ -204,11 +270,9 @@ impl Shape for Profile {
 impl Radial for Profile {
     /// Twice by parts, with ∫ r² J1(qr) dr = r² J2(qr)/q: the step at the end as a disc, every kink as a paraboloid.
     fn transform(&self, z: f64) -> f64 {
-        let end = z * self.radius();
-        let disc = if end < 1e-4 { 0.5 } else { bessel_j(1, end) / end };
         let kinks: f64 =
             self.kinks().map(|(radius, kink)| 0.25 * kink * radius.powi(4) * paraboloid_kernel(z * radius)).sum();
-        TAU * (self.step() * self.radius() * self.radius() * disc + kinks)
+        TAU * (self.stepped(z * self.radius()) + kinks)
     }
 
     /// The smaller of what the kinks leave, which falls slowly, and of all that is left, which falls fast where the
@@ -218,8 +282,62 @@ impl Radial for Profile {
         let width = STEP / self.radius();
         // A mode stands for its cell, in which |ĝ| may be as large as half a diagonal further in.
         let first = ((z - 2.0 * cell) / width).floor().max(0.0) as usize;
-        let Some([constant, linear]) = self.beyond.get(first) else { return kinks };
+        let Some([constant, linear]) = self.beyond.get_or_init(|| self.integrals()).get(first) else { return kinks };
         let all = (linear + cell * constant) / TAU + self.cut_off(width * STEPS as f64);
         kinks.min(all)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of 300 rows that fall and tremble, so that kinks of both signs nearly cancel.
+    fn trembling() -> Profile {
+        let row = |i: u32| {
+            let r = f64::from(i) / 300.0;
+            [3.0 * r, (1.0 - r * r).powi(2) + 0.01 * f64::from(i * 7919 % 13)]
+        };
+        Profile::new(&(0..=300).map(row).collect::<Vec<_>>()).unwrap()
+    }
+
+    #[test]
+    fn what_a_series_needs_is_made_when_one_asks_and_once() {
+        let profile = trembling();
+        assert!(profile.variance() > 0.0 && profile.integral(DVec2::ONE) > 0.0);
+        assert!(profile.beyond.get().is_none(), "made though only the direct sum was asked for");
+        let shared = std::sync::Arc::new(profile);
+        let first = Radial::beyond(&*shared, 20.0, 0.1);
+        let made = shared.beyond.get().unwrap().as_ptr();
+        assert_eq!((Radial::beyond(&*shared, 20.0, 0.1), shared.beyond.get().unwrap().as_ptr()), (first, made));
+        assert_eq!(*shared, trembling(), "the same profile, whatever has been made of it");
+    }
+
+    #[test]
+    fn the_bound_from_looked_up_kernels_holds_between_its_steps_and_is_close() {
+        let profile = trembling();
+        let (bounds, width) = (profile.sampled(), STEP / profile.radius());
+        let (mut largest, mut sum) = (0.0f64, [0.0; 2]);
+        for (i, bound) in bounds.iter().enumerate() {
+            let exact = [0.0, 0.5].map(|between| profile.transform(width * (i as f64 + between)).abs());
+            let next = bounds.get(i + 1).copied().unwrap_or(f64::INFINITY);
+            assert!(exact[0] <= *bound && exact[1] <= bound.max(next) + 0.03 * largest.max(exact[1]), "step {i}");
+            largest = largest.max(exact[0]);
+            sum = [sum[0] + bound, sum[1] + exact[0]];
+        }
+        assert!(sum[0] < 1.06 * sum[1], "{sum:?}");
+    }
+
+    #[test]
+    fn radii_that_the_device_cannot_tell_apart_are_refused() {
+        for (rows, expected) in [
+            ([[0.0, 1.0], [1e16, 0.0]], "the radius 1e16, and radii go from 1e-15 to 1e15"),
+            ([[0.0, 1.0], [1e-300, 0.0]], "the radius 1e-300"),
+            ([[1.0, 1.0], [1.0 + 1e-9, 0.0]], "closer than 1e-7 of themselves at row 2"),
+        ] {
+            let reason = Profile::new(&rows).unwrap_err();
+            assert!(reason.contains(expected), "{reason}");
+        }
+        assert!(Profile::new(&[[0.0, 1.0], [1e12, 0.0]]).is_ok());
     }
 }

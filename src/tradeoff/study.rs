@@ -135,7 +135,7 @@ mod tests {
     #[test]
     fn a_window_becomes_the_whole_picture() {
         let mut photo = Photo::new(2, 2, vec![[1.0; 4]; 4]);
-        photo.frame = Frame { width: 4, height: 3, window: Window { x: 1, y: 1, width: 2, height: 2 } };
+        photo.frame = Frame::full(4, 3).with_window(Window { x: 1, y: 1, width: 2, height: 2 });
         let whole = at_most(&photo, 1e6);
         assert_eq!((whole.width(), whole.height(), whole.pixels.len()), (4, 3, 12));
         assert_eq!([whole.pixels[0][0], whole.pixels[5][0], whole.pixels[7][0]], [0.0, 1.0, 0.0]);

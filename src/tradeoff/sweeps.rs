@@ -159,13 +159,14 @@ pub(super) fn ghosts(study: &mut Study<'_>, watch: Watch<'_>) -> Result<Vec<Poin
 /// # Errors
 /// [`Error::Gl`] where the driver refuses.
 pub(super) fn size(study: &mut Study<'_>, tolerance: f64, watch: Watch<'_>) -> Result<Vec<Point>> {
-    let (width, height) = (study.subject.photo.width(), study.subject.photo.height());
+    let whole = study.subject.photo.frame;
+    let (width, height) = (whole.width, whole.height);
     let side = study.bench.device().info().limits.texture_size;
     let factors: &[f64] = if study.quick { &[0.125, 0.25, 0.5, 1.0] } else { &[0.0625, 0.125, 0.25, 0.5, 0.707, 1.0] };
     let frames = factors.iter().filter_map(|factor| {
         let [width, height] = [width, height].map(|side| (f64::from(side) * factor).round() as u32);
         let fits = width.min(height) >= 1 && width.max(height) <= side;
-        (fits && f64::from(width) * f64::from(height) <= LARGEST).then(|| Frame::full(width, height))
+        (fits && f64::from(width) * f64::from(height) <= LARGEST).then(|| whole.resized(width, height))
     });
     let mut frames: Vec<Frame> = frames.collect();
     frames.dedup();
@@ -223,7 +224,7 @@ fn certified(
 /// Gaussians of σ 0.15 to 0.45 anywhere in the picture.
 fn scattered(count: usize, frame: Frame) -> Vec<Ghost> {
     let mut chance = Chance::new(SEED);
-    let aspect = f64::from(frame.width) / f64::from(frame.height);
+    let aspect = frame.half_width();
     let ghost = |_| Ghost {
         bell: Bell::Gaussian,
         center: DVec2::new(chance.between(-aspect, aspect), chance.between(-1.0, 1.0)),

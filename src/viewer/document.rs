@@ -166,7 +166,9 @@ impl Document {
         if gesture && self.look != *self.history.look() {
             self.history.begin();
         }
-        self.history.set(self.look.clone());
+        if self.look != *self.history.look() {
+            self.history.set(self.look.clone());
+        }
         if !gesture {
             self.history.commit();
         }
@@ -244,7 +246,8 @@ fn shrunk(window: Window, side: u32) -> Window {
 fn shrink(photo: &Photo, side: u32) -> (Frame, Option<Vec<[f32; 4]>>) {
     let from = photo.frame.window;
     let to = shrunk(from, side);
-    let frame = Frame { width: (photo.width() / side).max(1), height: (photo.height() / side).max(1), window: to };
+    let [width, height] = [photo.width(), photo.height()].map(|whole| (whole / side).max(1));
+    let frame = photo.frame.resized(width, height).with_window(to);
     let stride = from.width as usize;
     let (wide, tall) = (side.min(from.width) as usize, side.min(from.height) as usize);
     let weight = 1.0 / (wide * tall) as f32;

@@ -399,7 +399,8 @@ impl Stage {
 /// A frame of half as many columns and rows; the same where not all of it is stored.
 fn halved(frame: Frame) -> Frame {
     let (width, height) = (frame.width, frame.height);
-    if frame == Frame::full(width, height) { Frame::full(width.div_ceil(2), height.div_ceil(2)) } else { frame }
+    let whole = frame == frame.resized(width, height);
+    if whole { frame.resized(width.div_ceil(2), height.div_ceil(2)) } else { frame }
 }
 
 /// The look that is to be rendered.

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod calibrate;
+mod extremes;
 mod harmonics;
 mod lights;
 mod look;

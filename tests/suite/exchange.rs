@@ -6,7 +6,7 @@ use vglare::renderer::Settings;
 
 use crate::support::{bits, on_each_backend, plan_with, scenes};
 
-const FRAME: Frame = Frame { width: 83, height: 45, window: Window { x: -3, y: 2, width: 87, height: 41 } };
+const FRAME: Frame = Frame::full(83, 45).with_window(Window { x: -3, y: 2, width: 87, height: 41 });
 
 /// Pixels of every kind: light, negative, infinite, and NaN with a payload.
 fn photo(frame: Frame, seed: usize) -> Vec<[f32; 4]> {

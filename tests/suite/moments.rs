@@ -145,8 +145,7 @@ fn sums_do_not_depend_on_the_threads() {
     assert_eq!(one, by(2));
 }
 
-const FRAME: Frame =
-    Frame { width: 64, height: 36, window: vglare::frame::Window { x: 0, y: 0, width: 64, height: 36 } };
+const FRAME: Frame = Frame::full(64, 36);
 
 /// Ghosts of one size, some far outside the picture and some dark.
 fn alike(bell: &Bell, count: usize, size: f64) -> Vec<Ghost> {

@@ -8,7 +8,7 @@ use vglare::scene::Ghost;
 use crate::support::check::within;
 use crate::support::{bits, glare, on_each_backend, plan_with, rgb, scenes};
 
-const FRAME: Frame = Frame { width: 97, height: 61, window: Window { x: 0, y: 0, width: 97, height: 61 } };
+const FRAME: Frame = Frame::full(97, 61);
 
 /// Red top right, blue bottom left, each on the centre of a pixel.
 fn asymmetric() -> [Ghost; 2] {
@@ -74,6 +74,38 @@ fn a_window_keeps_the_promise_of_its_own_plan() {
             let exact = direct_at(&ghosts, &scenes::positions(frame, &pixels));
             let actual = rgb(&glare(renderer, &ghosts, &plan, frame));
             within(plan.predicted.total(), &format!("{backend}, {evaluator}, {window:?}"), &pixels, &exact, &actual);
+        }
+    });
+}
+
+/// The second moments of a round ghost over the pixels, in closed form: σ²/(2a/H)² and σ²/(2/H)².
+#[test]
+fn a_round_ghost_is_round_where_wide_pixels_are_shown() {
+    let ghosts = [scenes::one([0.0, 0.0], 0.15, [1.0; 3])];
+    let window = Window { x: -40, y: -30, width: 177, height: 121 };
+    on_each_backend(|backend, renderer| {
+        for (frame, evaluator) in [0.5, 2.0].into_iter().flat_map(|pixel_aspect| {
+            Evaluator::ALL.map(|evaluator| (Frame { pixel_aspect, ..FRAME }.with_window(window), evaluator))
+        }) {
+            let plan = plan_with(&ghosts, frame, 1e-4, evaluator);
+            let pixels = rgb(&glare(renderer, &ghosts, &plan, frame));
+            let sum = |of: &dyn Fn(f64, f64) -> f64| -> f64 {
+                let value = |(k, pixel): (usize, &[f64; 3])| {
+                    let (column, row) = ((k % 177) as f64 - 40.0 - 48.0, (k / 177) as f64 - 30.0 - 30.0);
+                    pixel[0] * of(column, row)
+                };
+                pixels.iter().enumerate().map(value).sum()
+            };
+            let all = sum(&|_, _| 1.0);
+            let variances = [sum(&|x, _| x * x) / all, sum(&|_, y| y * y) / all];
+            let expected = [frame.pixel_aspect, 1.0].map(|aspect| (0.15 / (2.0 * aspect / 61.0)).powi(2));
+            let name = format!("{backend}, {evaluator}, {}", frame.pixel_aspect);
+            for (got, want) in variances.into_iter().zip(expected) {
+                assert!((got / want - 1.0).abs() < 0.02, "{name}: {variances:?} for {expected:?}");
+            }
+            let places = scenes::every_pixel(frame);
+            let exact = direct_at(&ghosts, &scenes::positions(frame, &places));
+            within(plan.predicted.total(), &name, &places, &exact, &pixels);
         }
     });
 }

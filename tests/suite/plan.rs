@@ -111,7 +111,7 @@ fn a_plan_is_the_same_every_time() {
     }
 }
 
-const FRAME: Frame = Frame { width: 64, height: 36, window: Window { x: 0, y: 0, width: 64, height: 36 } };
+const FRAME: Frame = Frame::full(64, 36);
 
 #[test]
 fn what_is_given_is_kept() {

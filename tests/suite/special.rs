@@ -192,6 +192,25 @@ fn von_mises_coefficients_are_the_golden_ones() {
     println!("worst relative error {worst}; {underflows} underflows");
 }
 
+/// Values of Hankel's expansion (DLMF 10.40.1) in 60 digits by mpmath, which agreed with its quadrature of the integral.
+#[test]
+fn von_mises_coefficients_of_bells_1e12_times_narrower_than_their_period_are_there_at_once() {
+    let mut worst = Worst::default();
+    for (kappa, n, expected) in [
+        (1e9, 0, 1.261_566_261_167_775_8e-5),
+        (1e9, 1, 1.261_566_260_536_992_7e-5),
+        (1e9, 4096, 1.251_027_739_891_970_2e-5),
+        (2e8, 3000, 2.758_185_318_196_941_1e-5),
+        (2e8, 20_000, 1.037_768_742_470_477_6e-5),
+        (1e12, 100_000, 3.969_525_474_770_604e-7),
+        (1e24, 4096, 3.989_422_804_014_326_7e-13),
+        (2e5, 0, 8.920_626_156_167_399e-4),
+    ] {
+        hold(&mut worst, special::ive_all(n, kappa)[n as usize] / expected, 1.0, 1e-14, || format!("I_{n}({kappa})"));
+    }
+    println!("worst relative error {worst}");
+}
+
 #[test]
 fn von_mises_coefficients_hold_out_to_narrow_bells() {
     let mut worst = Worst::default();

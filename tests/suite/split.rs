@@ -1,7 +1,7 @@
 //! A few small ghosts beside many wide ones: the small ones are summed, the others are a series, and the sum of both is as
 //! exact as predicted.
 
-use vglare::frame::{Frame, Window};
+use vglare::frame::Frame;
 use vglare::gpu::Backend;
 use vglare::plan::{CostModel, Evaluator, Plan, Request, Transform, plan};
 use vglare::reference::direct_at;
@@ -12,7 +12,7 @@ use vglare::series::Bell;
 use crate::support::check::within;
 use crate::support::{bits, glare, on_backend, on_each_backend, scenes};
 
-const FRAME: Frame = Frame { width: 160, height: 90, window: Window { x: 0, y: 0, width: 160, height: 90 } };
+const FRAME: Frame = Frame::full(160, 90);
 
 /// 300 wide Gaussians, and a few small ghosts of some bell.
 fn mixed(seed: u64, small: usize, bell: &Bell) -> Vec<Ghost> {

@@ -6,7 +6,7 @@ use vglare::renderer::{Normalize, Renderer, Settings};
 
 use crate::support::{bits, on_each_backend, plan_with, scenes};
 
-const FRAME: Frame = Frame { width: 83, height: 45, window: Window { x: -3, y: 2, width: 87, height: 41 } };
+const FRAME: Frame = Frame::full(83, 45).with_window(Window { x: -3, y: 2, width: 87, height: 41 });
 
 fn pictures(renderer: &mut Renderer, tile_pixels: usize) -> [Vec<[u32; 4]>; 3] {
     renderer.set_tile_pixels(tile_pixels);

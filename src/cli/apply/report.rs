@@ -44,6 +44,8 @@ struct PhotoReport {
     layer: Option<String>,
     picture: [u32; 2],
     window: [i64; 4],
+    /// Width of a pixel over its height.
+    pixel_aspect: f64,
     bad_pixels: BadReport,
 }
 
@@ -145,6 +147,7 @@ fn photo_report(job: &Job<'_>) -> PhotoReport {
         layer: photo.source.picture.clone(),
         picture: [photo.width(), photo.height()],
         window: [window.x.into(), window.y.into(), window.width.into(), window.height.into()],
+        pixel_aspect: photo.frame.pixel_aspect,
         bad_pixels: BadReport {
             nan: bad.nan,
             infinite: bad.infinite,

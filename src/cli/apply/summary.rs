@@ -42,6 +42,9 @@ fn about_photo(out: &mut dyn Write, job: &Job<'_>) -> io::Result<()> {
     let (width, height) = (photo.width(), photo.height());
     let (format, depth) = (photo.format_name(), photo.depth_name());
     write!(out, "photo    {}: {width} x {height}, {format}, {depth}", job.paths.input.display())?;
+    if photo.frame.pixel_aspect != 1.0 {
+        write!(out, ", pixels {:.4} times as wide as high", photo.frame.pixel_aspect)?;
+    }
     match &photo.source.picture {
         Some(picture) => writeln!(out, "; its picture is {picture}")?,
         None => writeln!(out)?,

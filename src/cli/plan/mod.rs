@@ -79,7 +79,7 @@ pub fn run(args: &Args) -> Result<()> {
     let photo = photo::read_with(&args.photo, &args.reading.options())?;
     warn(&photo.source.notes);
     let scene = look.gather(&photo);
-    let frame = args.size.map_or(photo.frame, |[width, height]| Frame::full(width, height));
+    let frame = args.size.map_or(photo.frame, |[width, height]| photo.frame.resized(width, height));
     let device = Device::open(args.accuracy.backend.backends()).ok();
     let info = device.as_ref().map(|device| device.info());
     let planned = job::plan(&look.accuracy, &scene.ghosts, frame, info, args.accuracy.known(info))?;
@@ -103,7 +103,11 @@ struct Told<'a> {
 impl Told<'_> {
     fn text(&self, out: &mut dyn Write) -> io::Result<()> {
         let window = self.frame.window;
-        writeln!(out, "photo    {}, planned for {} x {} pixels", self.photo.display(), window.width, window.height)?;
+        write!(out, "photo    {}, planned for {} x {} pixels", self.photo.display(), window.width, window.height)?;
+        match self.frame.pixel_aspect {
+            1.0 => writeln!(out)?,
+            aspect => writeln!(out, ", {aspect:.4} times as wide as high")?,
+        }
         match &self.scene.lens {
             Some(lens) => {
                 let (lights, ghosts) = (self.scene.lights.len(), self.scene.ghosts.len());

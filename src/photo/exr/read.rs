@@ -114,7 +114,7 @@ pub(super) fn frame(header: &Header) -> Result<Frame, Reason> {
         width: u32::try_from(header.layer_size.width())?,
         height: u32::try_from(header.layer_size.height())?,
     };
-    Ok(Frame { width, height, window })
+    Ok(Frame::full(width, height).with_window(window))
 }
 
 /// What the headers say of the picture, and what is to be told of it.

@@ -20,6 +20,7 @@ use super::picture::{Picture, Planes};
 use super::read::{frame, insert};
 use super::unpack::{self, is_plain, lines, pack, unsampled};
 use super::{Rest, explain, guard};
+use crate::frame::Frame;
 
 /// Blocks that are compressed together.
 const BLOCKS_A_THREAD: usize = 4;
@@ -91,9 +92,9 @@ fn is_unchanged(photo: &Photo, rest: &Rest) -> Result<bool, Reason> {
     Ok(pixels.len() == photo.pixels.len() && pixels.par_iter().zip(&photo.pixels).all(|(a, b)| same(a, b)))
 }
 
-/// The picture and its window must be those that the header describes.
+/// The picture and its window must be those that the header describes; how wide its pixels are shown is another attribute.
 fn check_window(photo: &Photo, header: &Header) -> Result<(), Reason> {
-    if frame(header)? != photo.frame {
+    if (Frame { pixel_aspect: photo.frame.pixel_aspect, ..frame(header)? }) != photo.frame {
         return Err("the photo's window is not that of the file it came from".into());
     }
     Ok(())

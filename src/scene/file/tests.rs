@@ -280,6 +280,35 @@ fn a_profile_may_stand_in_a_csv_file_beside() {
     assert!(reason.contains("spot.csv cannot be read"), "{reason}");
 }
 
+#[test]
+fn only_regular_files_that_are_not_too_long_are_read() {
+    let (folder, path) = file("lens.toml", "");
+    let refused = |read: &dyn Fn() -> Error, expected: &str| {
+        let reason = read().to_string();
+        assert!(reason.contains(expected), "{expected:?} is not in {reason}");
+    };
+    for device in ["/dev/zero", "/dev/stdin"] {
+        fs::write(&path, CSV_LENS.replace("spot.csv", device)).unwrap();
+        refused(&|| read_lens(&path).unwrap_err(), "is a pipe or a device, and vglare reads regular files only");
+    }
+    let pipe = folder.path().join("pipe.toml");
+    if std::process::Command::new("mkfifo").arg(&pipe).status().is_ok_and(|status| status.success()) {
+        refused(&|| read_lights(&pipe).unwrap_err(), "pipe.toml: cannot be read: it is a pipe or a device");
+        refused(&|| read_scene(&pipe).unwrap_err(), "pipe.toml: cannot be read: it is a pipe or a device");
+    }
+    refused(&|| read_scene(folder.path()).unwrap_err(), "is a folder");
+    let comment = |bytes: usize| {
+        fs::write(&path, format!("#{}\n[[light]]\nposition = [0, 0]\nflux = [1, 1, 1]", " ".repeat(bytes)))
+    };
+    comment(16 << 20).unwrap();
+    refused(&|| read_lights(&path).unwrap_err(), "is larger than 16 MiB");
+    comment((16 << 20) - 100).unwrap();
+    let link = folder.path().join("link.toml");
+    #[cfg(unix)]
+    std::os::unix::fs::symlink(&path, &link).unwrap();
+    assert_eq!(read_lights(if cfg!(unix) { &link } else { &path }).unwrap().len(), 1);
+}
+
 const CSV_LENS: &str = r#"
 [[profile]]
 name = "spot"

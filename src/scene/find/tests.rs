@@ -252,3 +252,25 @@ fn a_hundred_thousand_regions_merge_in_a_moment() {
     // Quadratic time would take minutes.
     assert!(start.elapsed().as_secs_f64() < 5.0);
 }
+
+/// A pixel twice as wide as high has twice the area, and the extent along one axis of a rectangle of 2 by 1.
+#[test]
+fn lights_of_wide_pixels_lie_farther_apart_and_are_larger() {
+    let (pixels, frame) = picture(8, 4, &[(6, 0, [3.0, 2.0, 1.0])]);
+    let frame = Frame { pixel_aspect: 2.0, ..frame };
+    let light = find(&pixels, &frame, REC709, &given(0.5)).lights[0];
+    assert_eq!(light.position, DVec2::new(2.5, 0.75));
+    assert_eq!(light.flux, [3.0, 2.0, 1.0].map(|radiance| radiance * 1.0 * 0.5));
+    assert!((light.size - 0.5 * (5.0f64 / 24.0).sqrt()).abs() < 1e-15, "{}", light.size);
+    // Two pixels of a row are 1 apart, two of a column 0.5.
+    let two = |i, j| picture(8, 4, &[(2, 1, [3.0; 3]), (i, j, [3.0; 3])]).0;
+    let found = |pixels: &[[f32; 4]]| find(pixels, &frame, REC709, &given(0.5)).lights;
+    let spread = |lights: Vec<Light>| (lights.len(), lights[0].size.powi(2));
+    let pixel = 0.25 * 5.0 / 24.0;
+    let [(one, across), (other, down)] = [two(3, 1), two(2, 2)].map(|pixels| spread(found(&pixels)));
+    assert_eq!((one, other), (1, 1));
+    // Variances of ±d/2 along one of two axes: d²/8.
+    assert!((across - pixel - 1.0 / 8.0).abs() < 1e-15 && (down - pixel - 0.25 / 8.0).abs() < 1e-15, "{across} {down}");
+    let merged = |merge| find(&two(4, 1), &frame, REC709, &FindOptions { merge, ..given(0.5) }).lights.len();
+    assert_eq!((merged(1.99), merged(2.01)), (2, 1));
+}

@@ -12,6 +12,23 @@ pub fn parabola_kernel(z: f64) -> f64 {
     3.0 * (sin - z * cos) / (z * z * z)
 }
 
+/// [`paraboloid_kernel`] on the cells [i h, (i+1) h], i = 0 .. `cells`, h = `step`, as coefficients of 1, t, t², t³ with
+/// 0 ≤ t ≤ 1 along the cell: Hermite's cubics, with (J_2/z²)' = −J_3/z² (DLMF 10.6.6).
+pub fn paraboloid_cubics(step: f64, cells: u32) -> Vec<[f64; 4]> {
+    let node = |i: u32| {
+        let z = step * f64::from(i);
+        let slope = if i == 0 { 0.0 } else { -8.0 * libm::jn(3, z) / (z * z) };
+        [paraboloid_kernel(z), step * slope]
+    };
+    let nodes: Vec<[f64; 2]> = (0..=cells).map(node).collect();
+    let cubic = |pair: &[[f64; 2]]| {
+        let ([from, out], [to, into]) = (pair[0], pair[1]);
+        let rise = to - from;
+        [from, out, 3.0 * rise - 2.0 * out - into, out + into - 2.0 * rise]
+    };
+    nodes.windows(2).map(cubic).collect()
+}
+
 /// 8 J_2(z)/z²: the two-dimensional transform of the paraboloid 1 − r²/ρ² at z = qρ, over its integral. Within 1e-15.
 ///
 /// Below |z| = 1, by the power series 2 Σ_k (−z²/4)^k/(k! (k+2)!) (DLMF 10.2.2), where the quotient would be 0/0.

@@ -13,6 +13,9 @@ const REACH: f32 = 20.0;
 /// At most so many ghosts of the selected light are marked.
 const MOST_MARKS: usize = 256;
 
+/// At most so many lights, and so many ghosts, have handles: the first ones on the canvas, and the one that is selected.
+const MOST_HANDLES: usize = 512;
+
 /// Draws the handles and lets them be dragged.
 pub fn show(ui: &mut Ui, document: &mut Document, placement: &Placement) {
     let painter = ui.painter().with_clip_rect(placement.rect);
@@ -20,12 +23,34 @@ pub fn show(ui: &mut Ui, document: &mut Document, placement: &Placement) {
     if let Some(selected) = document.selected {
         ghosts(&painter, document, placement, selected);
     }
-    for index in 0..document.look.ghosts.len() {
+    let chosen = document.selected_ghost.as_ref().map(|&(index, _)| index);
+    let centers = document.look.ghosts.iter().map(|ghost| ghost.center);
+    for index in handled(document, placement, chosen, centers) {
         placed(ui, &painter, document, placement, index);
     }
-    for index in 0..document.lights().len() {
+    let lights = document.lights();
+    let positions = lights.iter().map(|light| light.position);
+    for index in handled(document, placement, document.selected, positions) {
         light(ui, &painter, document, placement, index);
     }
+}
+
+/// Which of the places have handles.
+fn handled(
+    document: &Document,
+    placement: &Placement,
+    chosen: Option<usize>,
+    places: impl Iterator<Item = DVec2>,
+) -> Vec<usize> {
+    let canvas = placement.rect.expand(REACH);
+    let seen = |place: DVec2| canvas.contains(placement.to_screen(document.place(place)));
+    let mut indices = Vec::new();
+    for (index, place) in places.enumerate() {
+        if chosen == Some(index) || (indices.len() < MOST_HANDLES && seen(place)) {
+            indices.push(index);
+        }
+    }
+    indices
 }
 
 /// A ghost that no light makes: a square, and of the one that is selected the ellipse of its size.
@@ -35,7 +60,7 @@ fn placed(ui: &mut Ui, painter: &Painter, document: &mut Document, placement: &P
     if response.clicked() || response.drag_started() {
         document.select_ghost(index);
     }
-    if let Some(moved) = moved(&response, placement, document.frame.pixel_size()) {
+    if let Some(moved) = moved(&response, placement, document.frame.pixel_sides()) {
         document.look.ghosts[index].center += moved;
     }
     let ghost = &document.look.ghosts[index];
@@ -50,7 +75,7 @@ fn placed(ui: &mut Ui, painter: &Painter, document: &mut Document, placement: &P
     painter.circle_filled(at, 2.5, colour(ghost.radiance));
     if chosen {
         // Half picture heights in points.
-        let scale = 1.0 / (document.frame.pixel_size() * placement.pitch * placement.scale);
+        let scale = 1.0 / (document.frame.pixel_sides() * placement.pitch * placement.scale);
         let radius = (scale * document.look.size * ghost.size).as_vec2();
         painter.add(Shape::ellipse_stroke(
             at,
@@ -66,7 +91,7 @@ fn axis(ui: &mut Ui, painter: &Painter, document: &mut Document, placement: &Pla
         "The lens's axis: ghosts lie on the lines through it and their lights.\n\
          Drag it; a double click puts it back into the picture's centre.",
     );
-    if let Some(moved) = moved(&response, placement, document.frame.pixel_size()) {
+    if let Some(moved) = moved(&response, placement, document.frame.pixel_sides()) {
         document.look.axis += moved;
     }
     if response.double_clicked() {
@@ -84,7 +109,7 @@ fn light(ui: &mut Ui, painter: &Painter, document: &mut Document, placement: &Pl
     if response.clicked() || response.drag_started() {
         document.select(index);
     }
-    if let Some(moved) = moved(&response, placement, document.frame.pixel_size()) {
+    if let Some(moved) = moved(&response, placement, document.frame.pixel_sides()) {
         document.lights_mut()[index].position += moved;
     }
     let light = document.lights()[index];
@@ -119,8 +144,8 @@ fn handle(ui: &mut Ui, placement: &Placement, at: Pos2, salt: impl std::hash::Ha
     ui.interact(rect, ui.scope_id().with(("handle", salt)), Sense::click_and_drag()).on_hover_cursor(CursorIcon::Move)
 }
 
-/// By how much a handle was dragged, on the picture plane; `pixel` is the side of a pixel there.
-fn moved(response: &Response, placement: &Placement, pixel: f64) -> Option<DVec2> {
+/// By how much a handle was dragged, on the picture plane; `pixel` has the sides of a pixel there.
+fn moved(response: &Response, placement: &Placement, pixel: DVec2) -> Option<DVec2> {
     let moved = response.drag_delta();
     let by = DVec2::new(f64::from(moved.x), -f64::from(moved.y)) * placement.scale * placement.pitch * pixel;
     (response.dragged() && by != DVec2::ZERO).then_some(by)
@@ -135,4 +160,38 @@ fn colour(flux: [f64; 3]) -> Color32 {
     let most = flux.iter().fold(f64::MIN_POSITIVE, |a, &b| a.max(b));
     let code = |channel: f64| (255.0 * (channel / most).clamp(0.0, 1.0).powf(1.0 / 2.2)) as u8;
     Color32::from_rgb(code(flux[0]), code(flux[1]), code(flux[2]))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use egui::pos2;
+
+    use super::*;
+    use crate::look::{Look, LookLights};
+    use crate::photo::Photo;
+    use crate::scene::Light;
+    use crate::viewer::viewing::Zoom;
+
+    #[test]
+    fn of_very_many_lights_the_first_on_the_canvas_and_the_selected_one_have_handles() {
+        // Every other light is far off the picture.
+        let light = |index: u32| Light {
+            position: DVec2::new(if index % 2 == 0 { 0.5 } else { 50.0 }, 0.0),
+            flux: [1.0; 3],
+            size: 0.0,
+            muted: false,
+        };
+        let look = Look { lights: LookLights::Listed((0..100_000).map(light).collect()), ..Look::default() };
+        let document = Document::new(Path::new("a.exr"), Photo::new(8, 4, vec![[0.5; 4]; 32]), look);
+        let rect = Rect::from_min_max(pos2(0.0, 0.0), pos2(400.0, 200.0));
+        let placement = Placement::new(Zoom::Fit, [8, 4], rect, 1.0, [400, 200]).unwrap();
+        let lights = document.lights();
+        let places = || lights.iter().map(|light| light.position);
+        let mut expected: Vec<usize> = (0..MOST_HANDLES).map(|k| 2 * k).collect();
+        assert_eq!(handled(&document, &placement, None, places()), expected);
+        expected.push(77_777);
+        assert_eq!(handled(&document, &placement, Some(77_777), places()), expected);
+    }
 }

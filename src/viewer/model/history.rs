@@ -2,10 +2,13 @@
 
 use std::collections::VecDeque;
 
-use super::Look;
+use super::{Look, LookLights};
 
 /// Most steps that can be undone.
 pub const DEPTH: usize = 200;
+
+/// Most lights and ghosts that those steps hold together, about 100 MB: a look may list 100,000 lights.
+const MOST_LISTED: usize = 1_000_000;
 
 /// A look, those before it, and those that were undone.
 #[derive(Debug, Clone)]
@@ -88,17 +91,28 @@ impl History {
     }
 
     fn step(&mut self, old: Look) {
-        if self.before.len() == DEPTH {
-            self.before.pop_front();
-        }
         self.before.push_back(old);
         self.undone.clear();
+        let mut listed: usize = self.before.iter().map(listed).sum();
+        while self.before.len() > DEPTH || (listed > MOST_LISTED && self.before.len() > 1) {
+            listed -= self.before.pop_front().as_ref().map_or(0, self::listed);
+        }
     }
+}
+
+/// How many lights and ghosts a look lists.
+fn listed(look: &Look) -> usize {
+    let lights = match &look.lights {
+        LookLights::Found => 0,
+        LookLights::Listed(lights) | LookLights::FoundAnd(lights) => lights.len(),
+    };
+    lights + look.ghosts.len()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Light;
 
     fn of(strength: f64) -> Look {
         Look { strength, ..Look::default() }
@@ -174,5 +188,17 @@ mod tests {
         (1..=2 * DEPTH).for_each(|step| history.set(of(step as f64)));
         let undone = std::iter::from_fn(|| history.undo().then_some(())).count();
         assert_eq!((undone, history.look().strength), (DEPTH, DEPTH as f64));
+    }
+
+    #[test]
+    fn looks_of_very_many_lights_are_few_steps_and_the_last_can_always_be_undone() {
+        let light = Light { position: glam::DVec2::ZERO, flux: [1.0; 3], size: 0.0, muted: false };
+        let many = |strength, count| Look { lights: LookLights::Listed(vec![light; count]), ..of(strength) };
+        let mut history = History::new(many(0.0, 300_000));
+        (1..=20).for_each(|step| history.set(many(f64::from(step), 300_000)));
+        assert_eq!(history.before.iter().map(listed).sum::<usize>(), 900_000);
+        history.set(many(21.0, 3 * MOST_LISTED));
+        history.set(of(22.0));
+        assert!(history.undo() && history.look().strength == 21.0);
     }
 }

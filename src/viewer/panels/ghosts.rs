@@ -5,6 +5,7 @@ use glam::DVec2;
 
 use super::bell::{self, Bells};
 use super::colour;
+use super::lights::list;
 use crate::scene::Ghost;
 use crate::series::Bell;
 use crate::viewer::control::{self, Number, Tip, button, done_by};
@@ -53,7 +54,7 @@ pub fn show(ui: &mut Ui, document: &mut Document) {
         document.select_ghost(document.look.ghosts.len() - 1);
     }
     let mut gone = None;
-    for index in 0..document.look.ghosts.len() {
+    list(ui, "ghosts", document.look.ghosts.len(), None, |ui, index| {
         let number = index + 1;
         ui.horizontal(|ui| {
             let text = format!("Ghost {number}:  {}", document.look.ghosts[index].bell);
@@ -67,7 +68,7 @@ pub fn show(ui: &mut Ui, document: &mut Document) {
                 gone = Some(index);
             }
         });
-    }
+    });
     if let Some(index) = gone {
         document.delete_ghost(index);
     }

@@ -1,6 +1,6 @@
 //! What counts as a light, the list of lights, and the one that is selected.
 
-use egui::{Align, ScrollArea, Ui};
+use egui::{ScrollArea, Ui};
 use glam::DVec2;
 
 use super::{colour, ghosts};
@@ -102,12 +102,10 @@ pub fn show(ui: &mut Ui, document: &mut Document, _: &Stage) {
         },
     );
     let mut gone = None;
-    // So many that they would leave no room for the rest have a part of the panel to be scrolled in.
-    ScrollArea::vertical().id_salt("lights").max_height(LIST).show(ui, |ui| {
-        for index in 0..document.lights().len() {
-            if row(ui, document, index) {
-                gone = Some(index);
-            }
+    let shown = document.shows_light.take();
+    list(ui, "lights", document.lights().len(), shown, |ui, index| {
+        if row(ui, document, index) {
+            gone = Some(index);
         }
     });
     if let Some(index) = gone {
@@ -119,6 +117,19 @@ pub fn show(ui: &mut Ui, document: &mut Document, _: &Stage) {
     }
     ui.separator();
     ghosts::show(ui, document);
+}
+
+/// A list, of which only the rows that are seen are made: there may be 100,000 of them. `shown` is scrolled to.
+///
+/// So many that they would leave no room for the rest have a part of the panel to be scrolled in.
+pub(super) fn list(ui: &mut Ui, name: &str, rows: usize, shown: Option<usize>, mut row: impl FnMut(&mut Ui, usize)) {
+    let height = ui.spacing().interact_size.y;
+    let mut area = ScrollArea::vertical().id_salt(name).max_height(LIST);
+    if let Some(index) = shown {
+        let middle = index as f32 * (height + ui.spacing().item_spacing.y) - 0.5 * (LIST - height);
+        area = area.vertical_scroll_offset(middle.max(0.0));
+    }
+    area.show_rows(ui, height, rows, |ui, seen| seen.for_each(|index| row(ui, index)));
 }
 
 /// A light in the list; whether it is to be deleted.
@@ -138,12 +149,7 @@ fn row(ui: &mut Ui, document: &mut Document, index: usize) -> bool {
         let about = "Selects the light. Its flux is radiance times area, in half picture heights squared";
         let text = format!("Light {number}:  {:.2e}", mean_flux(&light));
         let chosen = document.selected == Some(index);
-        let label = ui.selectable_label(chosen, text);
-        if document.shows_light == Some(index) {
-            label.scroll_to_me(Some(Align::Center));
-            document.shows_light = None;
-        }
-        if done_by(ui, format!("light {number}"), about, |_| label) {
+        if done_by(ui, format!("light {number}"), about, |ui| ui.selectable_label(chosen, text)) {
             document.select(index);
         }
         done_by(ui, format!("delete {number}"), "Deletes the light (Delete)", |ui| ui.small_button("×"))
@@ -215,4 +221,35 @@ fn another(lights: &[Light]) -> Light {
     let faintest = lights.iter().map(mean_flux).fold(f64::INFINITY, f64::min);
     let flux = if faintest.is_finite() { faintest } else { 1.0 };
     Light { position: DVec2::ZERO, flux: [flux; 3], size: 0.0, muted: false }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_a_list_of_100_000_only_the_rows_that_are_seen_are_made() {
+        let context = egui::Context::default();
+        let rows = |shown: Option<usize>| {
+            let mut made = Vec::new();
+            let mut output = context.run_ui(egui::RawInput::default(), |ui| {
+                list(ui, "lights", 100_000, shown, |ui, index| {
+                    ui.horizontal(|ui| ui.label(format!("Light {index}")));
+                    made.push(index);
+                });
+            });
+            // No one draws them.
+            output.textures_delta.clear();
+            made
+        };
+        // A context's first frames measure.
+        for _ in 0..3 {
+            rows(None);
+        }
+        let made = rows(None);
+        assert!(made[0] == 0 && made.len() < 30, "{made:?}");
+        rows(Some(54_321));
+        let made = rows(None);
+        assert!(made.contains(&54_321) && made.len() < 60, "{made:?}");
+    }
 }

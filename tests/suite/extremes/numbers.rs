@@ -7,7 +7,7 @@ use vglare::scene::Ghost;
 
 use crate::support::scenes;
 
-const FRAME: Frame = Frame { width: 16, height: 9, window: vglare::frame::Window { x: 0, y: 0, width: 16, height: 9 } };
+const FRAME: Frame = Frame::full(16, 9);
 
 #[track_caller]
 fn refused(ghost: Ghost, says: &str) {
