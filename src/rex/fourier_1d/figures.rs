@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use image::RgbImage;
 
-use super::bells::{Bells, Kind, PERIOD};
+use super::bells::{Bells, Kind};
 use crate::Result;
 use crate::gpu::lines::LinesPass;
 use crate::gpu::runner::Runner;
