@@ -52,11 +52,9 @@ pub fn write(writer: impl Write + Seek, photo: &Photo, depth: Depth) -> Result<(
     let mut headers = rest.headers.clone();
     check_window(photo, &headers[rest.layer.part()])?;
     let is_main = |chunk: &Chunk| rest.layer.member(chunk.layer_index).is_some();
-    if rest.is_subsampled {
-        if depth == photo.source.depth && is_unchanged(photo, rest)? {
-            let chunks: Vec<_> = rest.chunks.iter().collect();
-            return Container::new(writer, headers)?.finish(&[], &chunks);
-        }
+    if rest.is_subsampled && depth == photo.source.depth && is_unchanged(photo, rest)? {
+        let chunks: Vec<_> = rest.chunks.iter().collect();
+        return Container::new(writer, headers)?.finish(&[], &chunks);
     }
     let grey = display::is_grey(photo);
     let mut mains = Vec::new();
