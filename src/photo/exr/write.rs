@@ -229,14 +229,21 @@ impl<'p> Main<'p> {
     }
 }
 
-/// A block of nothing but zeros, for a part that lacks it.
+/// A block of nothing but zeros, for a part that lacks it; its bytes are taken from `budget`.
 ///
 /// # Errors
 /// Where it is too large, or its compression none that can be written.
-pub(super) fn zero_chunk(headers: &[Header], part: usize, tile: TileCoordinates) -> Result<Chunk, Reason> {
+pub(super) fn zero_chunk(
+    headers: &[Header],
+    part: usize,
+    tile: TileCoordinates,
+    budget: &mut usize,
+) -> Result<Chunk, Reason> {
     let header = &headers[part];
     let area = header.get_absolute_block_pixel_coordinates(tile).map_err(explain)?;
     let bytes = unpack::size(&header.channels, area);
+    *budget =
+        budget.checked_sub(bytes).ok_or("the file is unfinished, and its other parts lack too much to be filled")?;
     guard::affordable(bytes.saturating_mul(4))?;
     let packed = pack(header, area, vec![0; bytes])?;
     Ok(chunk(header, part, tile, area, packed))

@@ -138,6 +138,31 @@ fn pixels_without_alpha_stay_opaque_and_other_parts_are_filled() {
 }
 
 #[test]
+fn other_parts_that_lack_gigabytes_are_not_filled() {
+    let folder = Folder::new();
+    let path = folder.path("whole.exr");
+    let mut rgb = header(&ALL[1..4], Compression::ZIP16, BlockDescription::ScanLines);
+    let mut depth = header(&ALL[4..5], Compression::ZIP16, BlockDescription::ScanLines);
+    rgb.own_attributes.layer_name = Some(Text::from("rgb"));
+    depth.own_attributes.layer_name = Some(Text::from("depth"));
+    put(&path, vec![rgb, depth]);
+    let mut bytes = unfinished(&fs::read(&path).unwrap(), 2);
+    let at = bytes.windows(17).rposition(|bytes| bytes == b"dataWindow\0box2i\0").unwrap() + 21;
+    bytes[at + 8..at + 12].copy_from_slice(&99_999_999_i32.to_le_bytes());
+    let path = folder.put("wide.exr", &bytes);
+    let options = ReadOptions { missing: Missing::Zero, primaries: None };
+    let text = photo::read_with(&path, &options).unwrap_err().to_string();
+    assert!(text.contains("too much to be filled"), "{text}");
+}
+
+#[test]
+fn deep_data_is_refused_by_name() {
+    // Of OpenEXR 3.1.5's DeepScanLineOutputFile.
+    let text = reason(&input("exr-deep.exr"));
+    assert!(text.ends_with("it holds deep data, which vglare does not read"), "{text}");
+}
+
+#[test]
 fn sizes_are_checked_before_a_decoder_takes_memory() {
     let text = reason(&input("exr-dwa-counters.exr"));
     assert!(text.contains("counters of a DWA block"), "{text}");
