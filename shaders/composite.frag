@@ -26,7 +26,8 @@ void main() {
 #ifdef TAKE_LIGHT
     float given = emitted(light, luminance.rgb);
     bool is_light = given >= luminance.w && given > 0.0;
-    light.rgb *= is_light ? light_gain.rgb : vec3(1.0);
+    // Of a light, what is below 0 is no light.
+    light.rgb *= is_light ? mix(vec3(1.0), light_gain.rgb, greaterThan(light.rgb, vec3(0.0))) : vec3(1.0);
 #endif
     picture = vec4(light.rgb + added, light.a);
 #endif

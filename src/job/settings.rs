@@ -41,7 +41,7 @@ pub fn settings(
 }
 
 /// The flux of all pixels of a photo at or above a luminance, RGB, in the photo's unit times half picture heights
-/// squared: what they give, also of negative channels. Fireflies count here as what they are.
+/// squared: what they give, a negative channel none. Fireflies count here as what they are.
 pub fn bright_light(photo: &Photo, threshold: f64) -> [f64; 3] {
     let emission = Emission::of(photo);
     let (area, threshold) = (photo.frame.pixel_size().powi(2), threshold as f32);
@@ -52,7 +52,7 @@ pub fn bright_light(photo: &Photo, threshold: f64) -> [f64; 3] {
         if luminance >= threshold && luminance > 0.0 {
             let share = f64::from(emission.share(pixel)) * area;
             for (bright, &light) in bright.iter_mut().zip(pixel) {
-                *bright += f64::from(light) * share;
+                *bright += f64::from(light.max(0.0)) * share;
             }
         }
     }
@@ -105,11 +105,11 @@ mod tests {
     fn straight_alpha_takes_its_share_of_bright_light_and_darker_than_black_has_none() {
         let mut photo = Photo::new(5, 1, [0.0, 0.25, 0.5, 1.0, f32::NAN].map(|alpha| [8.0, 4.0, -2.0, alpha]).to_vec());
         // A pixel's area is 2 × 2.
-        let whole = [8.0, 4.0, -2.0].map(|light: f64| 4.0 * light);
-        assert_eq!(bright_light(&photo, 1.0), whole.map(|light| 5.0 * light));
+        let whole = [32.0, 16.0, 0.0];
+        assert_eq!(bright_light(&photo, 1.0), whole.map(|light: f64| 5.0 * light));
         photo.source.alpha = Alpha::Straight;
-        assert_eq!(bright_light(&photo, 1.0), whole.map(|light| 1.75 * light));
-        assert_eq!(bright_light(&photo, 2.0), whole.map(|light| 1.5 * light));
+        assert_eq!(bright_light(&photo, 1.0), whole.map(|light: f64| 1.75 * light));
+        assert_eq!(bright_light(&photo, 2.0), whole.map(|light: f64| 1.5 * light));
         photo.source.primaries = Some(Primaries::ACES2065_1);
         photo.pixels.fill([0.0, 0.0, 9.0, 1.0]);
         assert_eq!(bright_light(&photo, 0.0), [0.0; 3]);

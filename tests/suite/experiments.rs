@@ -6,6 +6,7 @@ use clap::Parser;
 use vglare::gpu::Backend;
 use vglare::rex::{Experiment, Field, Figure, Lab, Report};
 
+use crate::support::table::faults;
 use crate::support::turn;
 
 #[derive(Parser)]
@@ -22,7 +23,25 @@ fn run(arguments: &str) -> Report {
         let _turn = turn();
         experiment.run(&mut Lab::new(&[Backend::Egl])).unwrap()
     };
-    std::thread::scope(|scope| scope.spawn(run).join().unwrap())
+    let report = std::thread::scope(|scope| scope.spawn(run).join().unwrap());
+    tidy(&report);
+    report
+}
+
+/// All tables and numbers of a report are such as a notebook reads.
+#[track_caller]
+fn tidy(report: &Report) {
+    for table in &report.tables {
+        let faults = faults(&table.header, &table.rows);
+        assert!(faults.is_empty(), "{}: {faults:?}", table.stem);
+    }
+    for figure in &report.figures {
+        let Some(numbers) = &figure.numbers else { continue };
+        let text = |row: &Vec<f64>| row.iter().map(f64::to_string).collect();
+        let faults = faults(&numbers.columns, &numbers.rows.iter().map(text).collect::<Vec<_>>());
+        assert!(faults.is_empty(), "{}: {faults:?}", figure.stem);
+        assert!(numbers.series.is_empty() || numbers.series.len() == numbers.rows.len(), "{}", figure.stem);
+    }
 }
 
 fn figure<'a>(report: &'a Report, stem: &str) -> &'a Figure {

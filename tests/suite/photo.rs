@@ -4,6 +4,9 @@ mod colour;
 mod damaged;
 mod display;
 mod exr;
+mod exr_gaps;
+mod exr_layers;
+mod exr_sampled;
 mod target;
 mod tiff;
 
@@ -11,6 +14,11 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 use vglare::photo::{self, Depth, Photo, WriteOptions};
+
+/// A file of `tests/inputs`.
+fn input(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs").join(name)
+}
 
 /// A folder for a test's files; gone when the test ends.
 struct Folder(TempDir);

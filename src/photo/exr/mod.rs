@@ -2,7 +2,7 @@
 //!
 //! | module | what |
 //! | --- | --- |
-//! | `names`, `layer` | which channels are the picture |
+//! | `names`, `candidates`, `layer` | which channels are the picture |
 //! | `blocks` | the file as a container: where its compressed blocks are, and which are missing |
 //! | `guard` | whether a block can be what it says |
 //! | `unpack` | a block's bytes, by the decoders of the `exr` crate |
@@ -17,6 +17,7 @@
 //! Deep data is refused.
 
 mod blocks;
+mod candidates;
 mod chroma;
 mod guard;
 mod layer;

@@ -5,6 +5,9 @@ use std::borrow::Cow;
 use exr::meta::attribute::Text;
 use exr::meta::header::Header;
 
+/// The eyes' views, as everyone calls them.
+const STEREO: [&str; 2] = ["left", "right"];
+
 /// What the channels of one layer in one part are called.
 pub(super) struct Names {
     /// What the channels' names begin with: nothing, or a layer's name and a dot.
@@ -32,8 +35,15 @@ impl Names {
         let of_part = own.view_name.as_ref().map(text);
         let view = of_prefix.map(|index| &views[index]).or(of_part.as_ref()).or(of_root).map(|view| view.to_string());
         let part_name = own.layer_name.as_ref().map(text).unwrap_or_default();
-        let name = words.last().copied().unwrap_or_else(|| without_view(&part_name, view.as_deref()));
-        let layer = name.rsplit('.').next().unwrap_or_default().to_lowercase();
+        let own_words: Vec<&str> = without_view(&part_name, view.as_deref()).split('.').collect();
+        let mut words = if words.is_empty() { own_words } else { words };
+        // Writers that do not say which views there are still name them.
+        let unsaid = words.last().filter(|last| view.is_none() && STEREO.contains(last)).map(|last| (*last).to_owned());
+        if unsaid.is_some() {
+            words.pop();
+        }
+        let view = view.or(unsaid);
+        let layer = words.last().copied().unwrap_or_default().to_lowercase();
         let part = own.layer_name.as_ref().map(|name| text(name).into_owned());
         Self { prefix: prefix.to_owned(), layer, view, part }
     }

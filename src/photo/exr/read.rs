@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use exr::block::chunk::{Chunk, CompressedBlock, TileCoordinates};
 use exr::math::Vec2;
-use exr::meta::BlockDescription;
 use exr::meta::attribute::{Chromaticities, LevelMode, SampleType};
 use exr::meta::header::Header;
+use exr::meta::{BlockDescription, Headers};
 use glam::DVec2;
 use rayon::prelude::*;
 
@@ -23,6 +23,10 @@ use crate::frame::{Frame, Window};
 
 /// Blocks that are decompressed together: enough to keep every thread busy, few enough to stay small.
 const BLOCKS_A_THREAD: usize = 4;
+
+/// Bytes of zeros that other parts' missing blocks may come to: so many for each pixel of the picture, and so many more.
+const FILL_A_PIXEL: usize = 1 << 10;
+const FILL: usize = 1 << 26;
 
 /// The least share of green in luminance by which luminance and chroma give green.
 const LEAST_GREEN: f64 = 1e-3;
@@ -57,16 +61,7 @@ pub fn read(reader: impl BufRead + Seek, options: &ReadOptions) -> Result<Photo,
         }
         insert(&mut picture, &layer, &headers, main.into_iter().map(|block| (block.tile, block.chunk)).collect())?;
     }
-    for part in 0..headers.len() {
-        let absent: Vec<_> = blocks.absent(part).filter(|&(_, tile)| wanted(part, tile)).collect();
-        if !has_gaps && !absent.is_empty() {
-            return Err(format!("the file is damaged: {} of its blocks are missing", absent.len()).into());
-        }
-        // The parts that ride along are whole in what is written.
-        for (index, tile) in absent.into_iter().filter(|_| layer.member(part).is_none()) {
-            chunks.push((index, zero_chunk(&headers, part, tile)?));
-        }
-    }
+    chunks.extend(absent(&blocks, &layer, &headers, has_gaps)?);
     let weights = luminance_weights(source.primaries, options);
     let (pixels, planes) = picture.finish(weights, has_gaps);
     let frame = frame(&headers[layer.part()])?;
@@ -75,6 +70,30 @@ pub fn read(reader: impl BufRead + Seek, options: &ReadOptions) -> Result<Photo,
     let headers = headers.into_iter().enumerate().map(levels).collect();
     let rest = Rest { headers, layer, planes, chunks, weights, is_subsampled: is_subsampled && !has_gaps };
     Ok(Photo { frame, pixels, source: Source { exr: Some(Arc::new(rest)), picture: name, notes, ..source } })
+}
+
+/// Blocks of zeros for those that the parts lack which ride along, so that they are whole in what is written.
+fn absent<R: BufRead + Seek>(
+    blocks: &Blocks<R>,
+    layer: &Layer,
+    headers: &Headers,
+    may_lack: bool,
+) -> Result<Vec<(usize, Chunk)>, Reason> {
+    let mut budget = headers[layer.part()].layer_size.area().saturating_mul(FILL_A_PIXEL).saturating_add(FILL);
+    let mut chunks = Vec::new();
+    for part in 0..headers.len() {
+        let is_main = layer.member(part).is_some();
+        let absent = blocks.absent(part).filter(|&(_, tile)| !is_main || tile.level_index == Vec2(0, 0));
+        for (index, tile) in absent {
+            if !may_lack {
+                return Err("the file is damaged: blocks are missing, though its table names them".into());
+            }
+            if !is_main {
+                chunks.push((index, zero_chunk(headers, part, tile, &mut budget)?));
+            }
+        }
+    }
+    Ok(chunks)
 }
 
 /// Decompresses blocks of the picture into it.

@@ -56,11 +56,9 @@ pub fn write(writer: impl Write + Seek, photo: &Photo, depth: Depth) -> Result<(
     let mut headers = rest.headers.clone();
     check_window(photo, &headers[rest.layer.part()])?;
     let is_main = |chunk: &Chunk| rest.layer.member(chunk.layer_index).is_some();
-    if rest.is_subsampled {
-        if depth == photo.source.depth && is_unchanged(photo, rest)? {
-            let chunks: Vec<_> = rest.chunks.iter().collect();
-            return Container::new(writer, headers)?.finish(&[], &chunks);
-        }
+    if rest.is_subsampled && depth == photo.source.depth && is_unchanged(photo, rest)? {
+        let chunks: Vec<_> = rest.chunks.iter().collect();
+        return Container::new(writer, headers)?.finish(&[], &chunks);
     }
     let grey = display::is_grey(photo);
     let mut mains = Vec::new();
@@ -235,14 +233,21 @@ impl<'p> Main<'p> {
     }
 }
 
-/// A block of nothing but zeros, for a part that lacks it.
+/// A block of nothing but zeros, for a part that lacks it; its bytes are taken from `budget`.
 ///
 /// # Errors
 /// Where it is too large, or its compression none that can be written.
-pub(super) fn zero_chunk(headers: &[Header], part: usize, tile: TileCoordinates) -> Result<Chunk, Reason> {
+pub(super) fn zero_chunk(
+    headers: &[Header],
+    part: usize,
+    tile: TileCoordinates,
+    budget: &mut usize,
+) -> Result<Chunk, Reason> {
     let header = &headers[part];
     let area = header.get_absolute_block_pixel_coordinates(tile).map_err(explain)?;
     let bytes = unpack::size(&header.channels, area);
+    *budget =
+        budget.checked_sub(bytes).ok_or("the file is unfinished, and its other parts lack too much to be filled")?;
     guard::affordable(bytes.saturating_mul(4))?;
     let packed = pack(header, area, vec![0; bytes])?;
     Ok(chunk(header, part, tile, area, packed))

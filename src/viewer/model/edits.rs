@@ -63,7 +63,8 @@ impl Look {
         let luminance = |rgb: [f64; 3]| rgb.iter().zip(weights).map(|(part, weight)| part * weight).sum::<f64>();
         self.edit_light(found, index, |light| {
             let factor = luminance(light.flux) / luminance(colour);
-            if factor.is_finite() {
+            // A weight may be negative, and so may be the luminance of a colour that no eye sees.
+            if factor.is_finite() && factor >= 0.0 {
                 light.flux = colour.map(|part| part * factor);
             }
         });
@@ -211,6 +212,8 @@ mod tests {
         let lights = edited(|look| look.set_light_colour(&found(), 1, [0.0, 0.2, 0.0], weights));
         assert!((lights[1].flux[1] - 4.5).abs() < 1e-12 && lights[1].flux[0] == 0.0, "{lights:?}");
         assert_eq!(edited(|look| look.set_light_colour(&found(), 1, [0.0; 3], weights)), found());
+        let ap0 = [0.344, 0.728, -0.072];
+        assert_eq!(edited(|look| look.set_light_colour(&found(), 1, [0.0, 0.0, 1.0], ap0)), found());
     }
 
     #[test]

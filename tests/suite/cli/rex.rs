@@ -92,6 +92,7 @@ fn the_periodic_gaussians_come_from_cpu_and_gpu_alike() {
             place.vglare(&args).succeeded();
             let folder = place.path(&out).join(name);
             files(&folder, "png").iter().for_each(|path| not_blank(path));
+            tidy(&folder, 5);
             let slips = Csv::read(&folder.join("slips.csv"));
             let (degrees, errors) = (slips.column("N"), slips.column("largest error"));
             assert_eq!(degrees, [10.0, 40.0].repeat(5));

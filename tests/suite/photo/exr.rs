@@ -21,13 +21,13 @@ use vglare::photo::{self, Alpha, Depth, ToneMap, WriteOptions};
 
 use super::{Folder, bits};
 
-const TILES: BlockDescription = BlockDescription::Tiles(TileDescription {
+pub(super) const TILES: BlockDescription = BlockDescription::Tiles(TileDescription {
     tile_size: Vec2(16, 8),
     level_mode: LevelMode::Singular,
     rounding_mode: RoundingMode::Down,
 });
 
-fn header(channels: &[(&str, SampleType)], compression: Compression, blocks: BlockDescription) -> Header {
+pub(super) fn header(channels: &[(&str, SampleType)], compression: Compression, blocks: BlockDescription) -> Header {
     let list = channels.iter().map(|&(name, kind)| ChannelDescription::named(name, kind)).collect();
     let mut header = Header::new(Text::from("x"), (37, 21), list);
     header.own_attributes.layer_name = None;
@@ -52,7 +52,7 @@ fn noise(block: BlockIndex, bytes: usize) -> Vec<u8> {
     (0..bytes).map(next).collect()
 }
 
-fn put(path: &Path, headers: Vec<Header>) {
+pub(super) fn put(path: &Path, headers: Vec<Header>) {
     let file = BufWriter::new(File::create(path).unwrap());
     block::write(file, Headers::from_vec(headers), false, |meta, writer| {
         for (index, block) in meta.enumerate_ordered_header_block_indices() {
@@ -65,10 +65,10 @@ fn put(path: &Path, headers: Vec<Header>) {
     .unwrap();
 }
 
-type Blocks = BTreeMap<[usize; 4], Vec<u8>>;
+pub(super) type Blocks = BTreeMap<[usize; 4], Vec<u8>>;
 
 /// Headers and decompressed bytes of every block.
-fn content(path: &Path) -> (Headers, Blocks) {
+pub(super) fn content(path: &Path) -> (Headers, Blocks) {
     let reader = block::read(BufReader::new(File::open(path).unwrap()), false).unwrap();
     let headers = reader.meta_data().headers.clone();
     let mut blocks = Blocks::new();
@@ -83,7 +83,7 @@ fn content(path: &Path) -> (Headers, Blocks) {
     (headers, blocks)
 }
 
-const ALL: [(&str, SampleType); 7] = [
+pub(super) const ALL: [(&str, SampleType); 7] = [
     ("A", SampleType::F16),
     ("B", SampleType::F16),
     ("G", SampleType::F32),
@@ -139,7 +139,7 @@ fn other_parts_ride_along_even_lossy_ones() {
     assert!(before == after);
 }
 
-fn with_levels() -> BlockDescription {
+pub(super) fn with_levels() -> BlockDescription {
     BlockDescription::Tiles(TileDescription {
         tile_size: Vec2(16, 8),
         level_mode: LevelMode::MipMap,

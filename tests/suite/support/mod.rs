@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod scenes;
+pub mod table;
 
 use std::cell::RefCell;
 use std::rc::{Rc, Weak};
