@@ -27,6 +27,8 @@
 //! | [`viewer`] | the window: a photo with its glare, live |
 //! | [`cli`] | the commands |
 
+#![warn(clippy::print_stderr, clippy::print_stdout)]
+
 mod calibration;
 pub mod certificate;
 mod chance;
@@ -41,8 +43,10 @@ pub mod job;
 pub mod look;
 pub mod measure;
 mod page;
+pub mod panics;
 pub mod photo;
 pub mod plan;
+mod printable;
 pub mod reference;
 pub mod renderer;
 pub mod rex;

@@ -1,6 +1,7 @@
 //! Small files that a command writes whole: beside the target, then renamed.
 
-use std::io::Write as _;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 use serde::Serialize;
@@ -27,9 +28,10 @@ pub fn check(path: &Path, overwrite: bool) -> Result<()> {
 /// # Errors
 /// Those of [`check`], and [`Error::Write`] where the disk is full or the system refuses.
 pub fn write_json(path: &Path, value: &impl Serialize, overwrite: bool) -> Result<()> {
-    let mut text = serde_json::to_string_pretty(value).map_err(|error| Error::write(path, error))?;
-    text.push('\n');
-    write_text(path, &text, overwrite)
+    write_by(path, overwrite, |out| {
+        serde_json::to_writer_pretty(&mut *out, value)?;
+        out.write_all(b"\n")
+    })
 }
 
 /// Writes a text.
@@ -45,11 +47,20 @@ pub fn write_text(path: &Path, text: &str, overwrite: bool) -> Result<()> {
 /// # Errors
 /// Those of [`check`], and [`Error::Write`] where the disk is full or the system refuses.
 pub fn write(path: &Path, bytes: &[u8], overwrite: bool) -> Result<()> {
+    write_by(path, overwrite, |out| out.write_all(bytes))
+}
+
+/// Writes what `print` prints.
+fn write_by(path: &Path, overwrite: bool, print: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
     check(path, overwrite)?;
-    let refused = |error: std::io::Error| Error::write(path, error);
+    let refused = |error: io::Error| Error::write(path, error);
+    let all = |file: &File| {
+        let mut out = BufWriter::new(file);
+        print(&mut out).and_then(|()| out.flush()).map_err(refused)
+    };
     if path.exists() && !path.is_file() {
         // A pipe or a device has no beside.
-        return std::fs::write(path, bytes).map_err(refused);
+        return all(&File::create(path).map_err(refused)?);
     }
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
@@ -58,8 +69,8 @@ pub fn write(path: &Path, bytes: &[u8], overwrite: bool) -> Result<()> {
         // What the umask leaves of the usual permissions, instead of a temporary file's own.
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    let mut file = builder.prefix(".vglare-").tempfile_in(folder(path)).map_err(refused)?;
-    file.write_all(bytes).map_err(refused)?;
+    let file = builder.prefix(".vglare-").tempfile_in(folder(path)).map_err(refused)?;
+    all(file.as_file())?;
     if overwrite {
         file.persist(path).map_err(|error| refused(error.error))?;
     } else {
@@ -68,6 +79,7 @@ pub fn write(path: &Path, bytes: &[u8], overwrite: bool) -> Result<()> {
     Ok(())
 }
 
-fn folder(path: &Path) -> &Path {
+/// The folder that a file is in.
+pub fn folder(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }

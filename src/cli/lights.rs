@@ -83,7 +83,11 @@ pub fn run(args: &Args) -> Result<()> {
     let photo = photo::read_with(&args.photo, &args.reading.options())?;
     warn(&photo.source.notes);
     let found = find(&photo.pixels, &photo.frame, photo.luminance_weights(), &args.find.over(FindOptions::default()));
-    stdout::print(|out| if args.json { json(out, &found) } else { table(out, &found, &photo.frame) })
+    if args.json {
+        stdout::json(|out| json(out, &found))
+    } else {
+        stdout::print(|out| table(out, &found, &photo.frame))
+    }
 }
 
 /// Found lights as `scene::read_lights` reads them.

@@ -22,7 +22,7 @@ mod view;
 
 use clap::{Parser, Subcommand};
 
-use crate::Result;
+use crate::{Error, Result, panics, printable};
 
 /// Veiling glare for HDR photographs, to a stated tolerance
 ///
@@ -63,12 +63,40 @@ enum Command {
     Man(shell::ManArgs),
 }
 
-/// Runs the command.
+/// The command line.
+///
+/// # Errors
+/// The code to exit with, where there is nothing to run: it is wrong, or asks for help, and that has been told.
+pub fn parse() -> std::result::Result<Cli, u8> {
+    Cli::try_parse().map_err(|error| {
+        // clap paints what it prints, and leaves what was typed as it is.
+        let typed = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
+        let safe = typed.into_iter().all(|word| printable::printable(&word) == word);
+        if safe || !error.use_stderr() {
+            let _ = error.print();
+        } else {
+            stderr::print(&error);
+        }
+        error.exit_code() as u8
+    })
+}
+
+/// Says what went wrong, on standard error.
+pub fn tell(error: &Error) {
+    stderr::tell(error);
+}
+
+/// Runs the command. What panics becomes an error.
 ///
 /// # Errors
 /// Those of the command; [`crate::Error::exit_code`] says what to exit with.
 pub fn run(cli: Cli) -> Result<()> {
-    match cli.command {
+    panics::keep_quiet();
+    panics::caught(|| command(cli.command))
+}
+
+fn command(command: Command) -> Result<()> {
+    match command {
         Command::Apply(args) => apply::run(&args),
         Command::View(args) => view::run(&args),
         Command::Plan(args) => plan::run(&args),

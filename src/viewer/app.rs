@@ -23,11 +23,12 @@ use super::study::Study;
 use super::task::{State, Task};
 use super::timings::Timings;
 use super::{panels, viewing};
-use crate::Result;
 use crate::gpu::paint::Painter;
 use crate::gpu::{Device, Screen};
 use crate::plan::Plan;
+use crate::printable::printable;
 use crate::scene::{FindOptions, Found};
+use crate::{Result, panics};
 
 use files::Files;
 pub(super) use files::LookFile;
@@ -229,7 +230,7 @@ impl App {
         self.settle(before);
         self.remember_theme();
         screen.clear(opaque(context.global_style().visuals.extreme_bg_color));
-        let again = match self.draw(screen) {
+        let again = match panics::caught(|| self.draw(screen)) {
             // What fails on a device that is lost is no news of the picture.
             Err(error) if self.painter.device().is_lost() => return Err(error),
             drawn => drawn.unwrap_or_else(|error| {
@@ -264,7 +265,7 @@ impl App {
         if let Some(Search { document, options, task }) = self.search.take() {
             match task.poll() {
                 State::Running => self.search = Some(Search { document, options, task }),
-                State::Failed => self.notice("the search for lights failed".into()),
+                State::Failed(error) => self.notice(format!("the search for lights failed: {error}")),
                 State::Done(found) => {
                     let searched = self.documents.iter_mut().find(|(number, _)| *number == document);
                     if let Some((_, document)) = searched {
@@ -299,6 +300,7 @@ impl App {
     }
 
     fn notice(&mut self, text: String) {
+        let text = printable(&text).into_owned();
         if !self.notices.contains(&text) {
             self.notices.push(text);
         }

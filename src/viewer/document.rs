@@ -11,6 +11,7 @@ use super::viewing::Viewing;
 use crate::Result;
 use crate::frame::{Frame, Window};
 use crate::photo::{self, Photo};
+use crate::printable;
 use crate::scene::{FindOptions, Found, Ghost, Light};
 
 /// The most pixels that are computed live: one tile of the renderer's, 4 Mpx.
@@ -205,9 +206,9 @@ impl Document {
         self.selected_ghost = self.selected_ghost.take().filter(|&(index, _)| index < ghosts);
     }
 
-    /// The file's name, without its folder.
+    /// The file's name, without its folder, as it can be shown.
     pub fn name(&self) -> String {
-        self.path.file_name().unwrap_or(self.path.as_os_str()).to_string_lossy().into_owned()
+        printable::line(&self.path.file_name().unwrap_or(self.path.as_os_str()).to_string_lossy())
     }
 
     /// Where a point of the picture plane lies among the shown pixels, counted from their top left corner.

@@ -91,7 +91,7 @@ impl Export {
         match self.task.poll() {
             State::Running => None,
             State::Done(result) => Some(result),
-            State::Failed => Some(Err(Error::write(&self.path, "its thread failed"))),
+            State::Failed(error) => Some(Err(error.in_frame(&self.path))),
         }
     }
 }

@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use super::document::Document;
 use super::model::Look;
-use crate::{Error, Result};
+use crate::{Error, Result, panics};
 
 /// Tells the event loop that something has come in.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
@@ -29,12 +29,19 @@ impl Loader {
 
     /// Begins to read a photo.
     pub fn read(&mut self, path: PathBuf, look: Look) {
+        let file = path.clone();
+        self.begin(path, move || Document::read(&file, look));
+    }
+
+    /// Begins to do what gives a document of a file.
+    fn begin(&mut self, path: PathBuf, read: impl FnOnce() -> Result<Document> + Send + 'static) {
         let (number, sender, wake) = (self.next, self.sender.clone(), self.wake.clone());
         self.next += 1;
-        self.under_way.push((number, path.clone()));
+        let name = path.clone();
+        self.under_way.push((number, path));
         let work = move || {
             // The other end is gone only when the window is.
-            let _ = sender.send((number, Document::read(&path, look)));
+            let _ = sender.send((number, panics::caught(read).map_err(|error| error.in_frame(&name))));
             wake();
         };
         if let Err(reason) = std::thread::Builder::new().name("photo".into()).spawn(work) {
@@ -64,5 +71,22 @@ impl Loader {
             }
         }
         done
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_while_a_file_is_read_is_what_came_of_it() {
+        let (sender, woken) = channel();
+        let mut loader = Loader::new(Arc::new(move || sender.send(()).unwrap()));
+        loader.begin("a.exr".into(), || panic!("as it should"));
+        woken.recv().unwrap();
+        let told: Vec<_> =
+            loader.take().into_iter().map(|result| result.err().map(|error| error.to_string())).collect();
+        assert_eq!(told, [Some("a.exr: an internal error (as it should); please report it".to_owned())]);
+        assert_eq!(loader.under_way().count(), 0);
     }
 }

@@ -5,10 +5,12 @@ mod calibrate;
 mod harmonics;
 mod look;
 mod outputs;
+mod panics;
 mod plan;
 mod refusals;
 mod rex;
 mod sequence;
+mod terminal;
 mod tradeoff;
 mod view;
 

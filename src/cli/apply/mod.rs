@@ -1,5 +1,6 @@
 //! `vglare apply`: the main job, for one photo or for the photos of a shot.
 
+mod fault;
 mod job;
 mod look;
 mod names;
@@ -8,6 +9,7 @@ mod pipeline;
 mod report;
 mod run;
 mod sequence;
+mod spool;
 mod summary;
 mod tally;
 
@@ -126,6 +128,10 @@ struct SequenceArgs {
     /// Finish each photo before the next is read: with one photo in memory at a time instead of up to three
     #[arg(long)]
     one_by_one: bool,
+
+    /// Panic in a step of one photo, to test that the others are done; see src/cli/apply/fault.rs
+    #[arg(long, value_name = "STEP:PHOTO", hide = true)]
+    panic_in: Option<fault::Fault>,
 }
 
 /// How the result is held against the truth.
