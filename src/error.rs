@@ -77,8 +77,12 @@ pub enum Error {
     #[error("the chart cannot be drawn: {0}")]
     Chart(String),
 
-    /// The system gives no thread to work on.
-    #[error("no thread can be started: {reason}")]
+    /// The system's limit of memory leaves too little.
+    #[error("not enough memory: {reason}")]
+    Memory { reason: String },
+
+    /// The system gives no thread to work on, or too few.
+    #[error("no threads can be started: {reason}")]
     Threads { reason: String },
 
     /// A mistake in the program itself.

@@ -40,6 +40,7 @@ pub mod error;
 pub mod frame;
 pub mod gpu;
 pub mod job;
+mod limits;
 pub mod look;
 pub mod measure;
 mod page;

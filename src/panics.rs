@@ -72,7 +72,7 @@ fn short(file: &str) -> &str {
     let after = |mark: &str| file.split_once(mark).map(|(_, rest)| rest);
     // A registry's own folder comes first.
     let of_registry = after("/registry/src/").and_then(|rest| rest.split_once('/')).map(|(_, rest)| rest);
-    of_registry.or_else(|| after("/library/")).unwrap_or(file)
+    of_registry.or_else(|| after("/library/")).or_else(|| after("/build/")).unwrap_or(file)
 }
 
 #[cfg(test)]
@@ -115,6 +115,7 @@ mod tests {
             ("src/scene/find.rs", "src/scene/find.rs"),
             ("/home/a/.cargo/registry/src/index.crates.io-1949/exr-1.74.0/src/lib.rs", "exr-1.74.0/src/lib.rs"),
             ("/rustc/0123/library/core/src/option.rs", "core/src/option.rs"),
+            ("/home/a/target/debug/build/egl_sys-01/out/egl.rs", "egl_sys-01/out/egl.rs"),
         ] {
             assert_eq!(short(file), expected);
         }

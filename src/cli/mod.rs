@@ -22,7 +22,7 @@ mod view;
 
 use clap::{Parser, Subcommand};
 
-use crate::{Error, Result, panics, printable};
+use crate::{Error, Result, gpu, limits, panics, printable};
 
 /// Veiling glare for HDR photographs, to a stated tolerance
 ///
@@ -92,10 +92,14 @@ pub fn tell(error: &Error) {
 /// Those of the command; [`crate::Error::exit_code`] says what to exit with.
 pub fn run(cli: Cli) -> Result<()> {
     panics::keep_quiet();
+    gpu::be_sparing();
     panics::caught(|| command(cli.command))
 }
 
 fn command(command: Command) -> Result<()> {
+    if !matches!(command, Command::Presets(_) | Command::Completions(_) | Command::Man(_)) {
+        limits::start_pool()?;
+    }
     match command {
         Command::Apply(args) => apply::run(&args),
         Command::View(args) => view::run(&args),

@@ -9,6 +9,7 @@ mod panics;
 mod plan;
 mod refusals;
 mod rex;
+mod scarce;
 mod sequence;
 mod terminal;
 mod tradeoff;

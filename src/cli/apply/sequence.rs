@@ -73,7 +73,7 @@ pub fn run(args: &Args, sequence: &Sequence) -> Result<()> {
         let item = item.through("write", Job::write);
         tally.add(item.paths, item.job)
     };
-    pipeline::run(frames.len(), !args.sequence.one_by_one, read, open, compute, write)?;
+    pipeline::run(frames.len(), args.sequence.side_by_side(), read, open, compute, write)?;
     let result = tally.finish();
     drop(progress);
     result

@@ -196,7 +196,7 @@ impl<'a> Tally<'a> {
                 worst_error: self.worst.as_ref().map(|worst| worst.measured),
                 worst_photo: self.worst.as_ref().map(|worst| worst.photo.display().to_string()),
                 seconds,
-                side_by_side: !self.args.sequence.one_by_one,
+                side_by_side: self.args.sequence.side_by_side(),
             },
         }
     }
