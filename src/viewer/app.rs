@@ -3,6 +3,7 @@
 mod ask;
 mod device;
 mod files;
+mod memory;
 mod menu;
 mod strips;
 
@@ -15,7 +16,7 @@ use egui::{CentralPanel, Color32, Key, Modifiers, Panel, RawInput, Ui};
 use super::canvas::{self, Canvas, Probe};
 use super::control::{self, Told};
 use super::document::Document;
-use super::loader::{Loader, Wake};
+use super::loader::{Loader, Read, Wake};
 use super::model::{Look, Work, work};
 use super::shortcuts::{self, Command};
 use super::stage::{Counts, Stage, Times};
@@ -32,6 +33,8 @@ use crate::{Result, panics};
 
 use files::Files;
 pub(super) use files::LookFile;
+use memory::Budget;
+pub use memory::PIXEL_BYTES;
 
 /// Milliseconds of plan, spectrum, composite and view from which on a drag is shown by previews.
 const SLOW: f64 = 33.0;
@@ -48,6 +51,7 @@ pub struct App {
     look: Look,
     search: Option<Search>,
     files: Files,
+    budget: Budget,
     documents: Vec<(u64, Document)>,
     current: usize,
     next: u64,
@@ -103,6 +107,7 @@ impl App {
             look,
             search: None,
             files: Files::default(),
+            budget: Budget::default(),
             documents: Vec::new(),
             current: 0,
             next: 0,
@@ -228,6 +233,7 @@ impl App {
             self.ui(ui, screen);
         });
         self.settle(before);
+        self.keep_within_budget();
         self.remember_theme();
         screen.clear(opaque(context.global_style().visuals.extreme_bg_color));
         let again = match panics::caught(|| self.draw(screen)) {
@@ -252,13 +258,16 @@ impl App {
 
     /// Takes what was read in the background.
     fn take_in(&mut self) {
-        for result in self.loader.take() {
-            match result {
-                Ok(document) => {
+        for Read { document, result } in self.loader.take() {
+            match (document, result) {
+                (Some(number), read) => self.wake(number, read),
+                (None, Ok(document)) => {
                     self.remember_photo(&document.path);
                     self.add(document);
+                    // While many are read, those before are let go of as the next come in.
+                    self.keep_within_budget();
                 }
-                Err(error) => self.notice(error.to_string()),
+                (None, Err(error)) => self.notice(error.to_string()),
             }
         }
         self.take_in_files();
@@ -286,7 +295,7 @@ impl App {
         if before.is_none_or(|before| work(&before, &document.known_look()) >= Work::Plan) {
             self.moved = self.context.time();
         }
-        if self.search.is_none() && document.wants_search() {
+        if self.search.is_none() && document.wants_search() && !document.is_asleep() {
             let (look, photo) = (document.look.clone(), document.photo.clone());
             let task = Task::start("search", &self.wake, move || look.find(&photo));
             match task {
@@ -310,6 +319,11 @@ impl App {
     fn draw(&mut self, screen: &Screen) -> Result<Duration> {
         let Some(placement) = self.canvas.placement else { return Ok(Duration::MAX) };
         let Some((number, document)) = self.documents.get(self.current) else { return Ok(Duration::MAX) };
+        if document.is_asleep() {
+            // Nothing of another photo under its name.
+            self.stage.clear();
+            return Ok(Duration::MAX);
+        }
         let still = self.context.time() - self.moved;
         let preview = self.cost > SLOW && still < SETTLED && self.context.egui_is_using_pointer();
         let done = self.stage.counts();
