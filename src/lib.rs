@@ -26,6 +26,9 @@
 //! | [`tradeoff`] | a photo and its ghosts → accuracy against time, measured here |
 //! | [`viewer`] | the window: a photo with its glare, live |
 //! | [`cli`] | the commands |
+//!
+//! Beside them stand [`panics`], which makes errors of them, `limits`, which asks the system for room and threads before
+//! they are needed, and `printable`, by which no text of a file commands a terminal.
 
 #![warn(clippy::print_stderr, clippy::print_stdout)]
 

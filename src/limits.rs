@@ -118,7 +118,8 @@ fn driver_threads() -> usize {
     2 * cores().min(16) + 3
 }
 
-fn cores() -> usize {
+/// How many threads can run at a time, as far as it is known.
+pub fn cores() -> usize {
     thread::available_parallelism().map_or(1, usize::from)
 }
 
