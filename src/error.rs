@@ -85,6 +85,18 @@ pub enum Error {
     #[error("the chart cannot be drawn: {0}")]
     Chart(String),
 
+    /// The system's limit of memory leaves too little.
+    #[error("not enough memory: {reason}")]
+    Memory { reason: String },
+
+    /// The system gives no thread to work on, or too few.
+    #[error("no threads can be started: {reason}")]
+    Threads { reason: String },
+
+    /// A mistake in the program itself.
+    #[error("an internal error ({what}); please report it")]
+    Internal { what: String },
+
     /// Someone who watched called it off.
     #[error("cancelled")]
     Cancelled,
@@ -147,6 +159,11 @@ impl Error {
     /// A [`Error::Write`] from anything that can say why.
     pub fn write(path: &Path, reason: impl ToString) -> Self {
         Self::Write { path: path.to_owned(), reason: reason.to_string() }
+    }
+
+    /// A [`Error::Threads`] from what the system says.
+    pub(crate) fn threads(reason: impl ToString) -> Self {
+        Self::Threads { reason: reason.to_string() }
     }
 
     /// A [`Error::SceneFile`] from anything that can say why.

@@ -26,6 +26,11 @@
 //! | [`tradeoff`] | a photo and its ghosts → accuracy against time, measured here |
 //! | [`viewer`] | the window: a photo with its glare, live |
 //! | [`cli`] | the commands |
+//!
+//! Beside them stand [`panics`], which makes errors of them, `limits`, which asks the system for room and threads before
+//! they are needed, and `printable`, by which no text of a file commands a terminal.
+
+#![warn(clippy::print_stderr, clippy::print_stdout)]
 
 mod calibration;
 pub mod certificate;
@@ -38,11 +43,14 @@ pub mod error;
 pub mod frame;
 pub mod gpu;
 pub mod job;
+mod limits;
 pub mod look;
 pub mod measure;
 mod page;
+pub mod panics;
 pub mod photo;
 pub mod plan;
+mod printable;
 pub mod reference;
 pub mod renderer;
 pub mod rex;

@@ -15,7 +15,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use super::accuracy::CalibrationArgs;
-use super::{BackendChoice, stdout};
+use super::{BackendChoice, stderr, stdout};
 use crate::gpu::Device;
 use crate::measure::Rounds;
 use crate::{Error, Result, target};
@@ -145,7 +145,7 @@ fn measure(args: &Args) -> Result<Report> {
 
     let known = args.calibration.known(Some(device.info()));
     if let Some(warning) = &known.warning {
-        eprintln!("vglare: warning: {warning}");
+        stderr::warn([warning]);
     }
     let stage = Stage::new(device, args.size, rounds, known.model);
     let mut report = Report::new(stage.device().info(), args.size, rounds);

@@ -47,7 +47,7 @@ struct Report {
 pub fn run(args: &Args) -> Result<()> {
     let reports: Vec<Report> =
         Backend::ALL.into_iter().map(|backend| report(backend, args.precision)).collect::<Result<_>>()?;
-    stdout::print(|out| if args.json { json(out, &reports) } else { text(out, &reports) })
+    if args.json { stdout::json(|out| json(out, &reports)) } else { stdout::print(|out| text(out, &reports)) }
 }
 
 fn report(backend: Backend, precise: bool) -> Result<Report> {

@@ -91,7 +91,11 @@ pub fn run(args: &Args) -> Result<()> {
     warn(&photo.source.notes);
     let options = args.find.over(FindOptions::default());
     let found = find(&photo.pixels, &photo.frame, Emission::of(&photo), &options);
-    stdout::print(|out| if args.json { json(out, &found) } else { table(out, &found, &options, &photo.frame) })
+    if args.json {
+        stdout::json(|out| json(out, &found))
+    } else {
+        stdout::print(|out| table(out, &found, &options, &photo.frame))
+    }
 }
 
 /// Found lights as `scene::read_lights` reads them.

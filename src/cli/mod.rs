@@ -25,7 +25,7 @@ mod view;
 use clap::error::{ContextKind, ContextValue};
 use clap::{Parser, Subcommand};
 
-use crate::Result;
+use crate::{Error, Result, gpu, limits, panics, printable};
 
 /// Veiling glare for HDR photographs, to a stated tolerance
 ///
@@ -66,11 +66,6 @@ enum Command {
     Man(shell::ManArgs),
 }
 
-/// What the command line says. Where it cannot be understood, or asks for help, that is printed and the program ends.
-pub fn parse() -> Cli {
-    Cli::try_parse().unwrap_or_else(|error| without_dashes(error).exit())
-}
-
 /// The error without the tip to put `--` before an option that is mistyped, which would make it a photo's name.
 fn without_dashes(mut error: clap::Error) -> clap::Error {
     if let Some(ContextValue::StyledStrs(tips)) = error.remove(ContextKind::Suggested) {
@@ -82,13 +77,45 @@ fn without_dashes(mut error: clap::Error) -> clap::Error {
     error
 }
 
-/// Runs the command.
+/// The command line.
+///
+/// # Errors
+/// The code to exit with, where there is nothing to run: it is wrong, or asks for help, and that has been told.
+pub fn parse() -> std::result::Result<Cli, u8> {
+    Cli::try_parse().map_err(without_dashes).map_err(|error| {
+        // clap paints what it prints, and leaves what was typed as it is.
+        let typed = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
+        let safe = typed.into_iter().all(|word| printable::printable(&word) == word);
+        if safe || !error.use_stderr() {
+            let _ = error.print();
+        } else {
+            stderr::print(&error);
+        }
+        error.exit_code() as u8
+    })
+}
+
+/// Says what went wrong, on standard error.
+pub fn tell(error: &Error) {
+    stderr::tell(error);
+}
+
+/// Runs the command. What panics becomes an error.
 ///
 /// # Errors
 /// Those of the command; [`crate::Error::exit_code`] says what to exit with.
 pub fn run(cli: Cli) -> Result<()> {
+    panics::keep_quiet();
+    gpu::be_sparing();
     signals::listen();
-    match cli.command {
+    panics::caught(|| command(cli.command))
+}
+
+fn command(command: Command) -> Result<()> {
+    if !matches!(command, Command::Presets(_) | Command::Completions(_) | Command::Man(_)) {
+        limits::start_pool()?;
+    }
+    match command {
         Command::Apply(args) => apply::run(&args),
         Command::View(args) => view::run(&args),
         Command::Plan(args) => plan::run(&args),

@@ -40,7 +40,7 @@ pub fn run(args: &Args) -> Result<()> {
         return stdout::print(|out| out.write_all(preset.toml.as_bytes()));
     }
     let lenses = presets::all().iter().map(|preset| preset.lens()).collect::<Result<Vec<_>>>()?;
-    stdout::print(|out| if args.json { json(out, &lenses) } else { table(out, &lenses) })
+    if args.json { stdout::json(|out| json(out, &lenses)) } else { stdout::print(|out| table(out, &lenses)) }
 }
 
 #[derive(Serialize)]

@@ -1,13 +1,15 @@
 //! A line that says what goes on, on a terminal, when it takes longer than a second.
 
-use std::borrow::Cow;
+use std::thread;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::job::Watch;
+use crate::printable;
 
 const PATIENCE: Duration = Duration::from_secs(1);
+const TICK: Duration = Duration::from_millis(100);
 /// Steps of a bar.
 const PARTS: f64 = 1000.0;
 
@@ -31,14 +33,20 @@ impl Progress {
         bar.set_style(style(STEP));
         if !quiet {
             let shown = bar.downgrade();
-            std::thread::spawn(move || {
-                std::thread::sleep(PATIENCE);
+            let show = move || {
+                thread::sleep(PATIENCE);
                 // Gone by now, if the work was.
                 if let Some(bar) = shown.upgrade() {
                     bar.set_draw_target(ProgressDrawTarget::stderr());
-                    bar.enable_steady_tick(Duration::from_millis(100));
                 }
-            });
+                while let Some(bar) = shown.upgrade() {
+                    bar.tick();
+                    drop(bar);
+                    thread::sleep(TICK);
+                }
+            };
+            // Where the system gives no thread, the work goes on without the line.
+            let _ = thread::Builder::new().name("progress".into()).spawn(show);
         }
         Self { bar }
     }
@@ -55,9 +63,9 @@ impl Progress {
     }
 
     /// Says what goes on now.
-    pub fn step(&self, what: impl Into<Cow<'static, str>>) {
+    pub fn step(&self, what: impl AsRef<str>) {
         self.bar.set_style(style(STEP));
-        self.bar.set_message(what);
+        self.bar.set_message(printable::line(what.as_ref()));
     }
 
     /// Takes the line away while `print` prints.
@@ -66,14 +74,14 @@ impl Progress {
     }
 
     /// Says what goes on now, and how much of all is done, from 0 to 1.
-    pub fn part(&self, what: impl Into<Cow<'static, str>>, done: f64) {
+    pub fn part(&self, what: impl AsRef<str>, done: f64) {
         if self.bar.length().is_none() {
             let template = "{spinner} {bar:30} {msg} {elapsed}";
             self.bar.set_style(ProgressStyle::with_template(template).expect("the template is sound"));
             self.bar.set_length(PARTS as u64);
         }
         self.bar.set_position((done * PARTS) as u64);
-        self.bar.set_message(what);
+        self.bar.set_message(printable::line(what.as_ref()));
     }
 }
 

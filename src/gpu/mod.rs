@@ -43,7 +43,7 @@ mod timer;
 pub(crate) mod view;
 
 pub use context::window::{Display, Surface, event_loop};
-pub use context::{Backend, Device, Info, Limits};
+pub use context::{Backend, Device, Info, Limits, be_sparing};
 pub use screen::{Region, Screen};
 pub use timer::PassTime;
 

@@ -6,7 +6,7 @@ use std::rc::Rc;
 use glow::HasContext as _;
 
 use super::context::Device;
-use crate::{Error, Result};
+use crate::{Error, Result, limits};
 
 /// How long one wait for a fence lasts, in nanoseconds, before the next one begins.
 const PATIENCE: i32 = 1_000_000_000;
@@ -89,6 +89,7 @@ impl PixelBuffer {
     /// Binds the buffer with new memory, so that nothing waits until the device has done with the old.
     fn renew(&self, target: u32, width: u32, height: u32, usage: u32) -> Result<()> {
         let bytes = bytes(width, height)?;
+        limits::room(bytes as u64, "a tile of pixels")?;
         let gl = self.device.gl();
         unsafe {
             gl.bind_buffer(target, Some(self.raw));

@@ -9,7 +9,7 @@ use glow::{HasContext as _, PixelPackData, PixelUnpackData};
 use super::context::Device;
 use super::layout::{Binding, WORKBENCH};
 use super::pixels::PixelBuffer;
-use crate::{Error, Result};
+use crate::{Error, Result, limits};
 
 fn refused(what: &str) -> impl FnOnce(String) -> Error {
     move |reason| Error::Gl(format!("{what}: {reason}"))
@@ -29,6 +29,7 @@ impl<T: Pod> Buffer<T> {
         let gl = device.gl();
         let bytes = i32::try_from(length.max(1) * size_of::<T>())
             .map_err(|_| Error::Gl(format!("a buffer of {length} elements is beyond 2 GiB")))?;
+        limits::room(bytes as u64, "a buffer")?;
         let raw = unsafe { gl.create_buffer() }.map_err(refused("buffer"))?;
         unsafe {
             gl.bind_buffer(glow::SHADER_STORAGE_BUFFER, Some(raw));
@@ -167,6 +168,9 @@ impl Texture {
         if width == 0 || height == 0 || width > most || height > most {
             return Err(Error::Gl(format!("a texture of {width}x{height} is not within 1 to {most}")));
         }
+        // The smaller levels add a third.
+        let bytes = (16 * u64::from(width) * u64::from(height)).saturating_mul(if levels > 1 { 4 } else { 3 }) / 3;
+        limits::room(bytes, "a texture")?;
         let gl = device.gl();
         let raw = unsafe { gl.create_texture() }.map_err(refused("texture"))?;
         // Whole before anything can fail, so that an early return frees what there is.
@@ -193,6 +197,7 @@ impl Texture {
                 gl.check_framebuffer_status(glow::FRAMEBUFFER)
             };
             if status != glow::FRAMEBUFFER_COMPLETE {
+                device.check(&format!("making a texture of {width}x{height}"))?;
                 return Err(Error::Gl(format!(
                     "a {texel:?} texture of {width}x{height} cannot be drawn into: {status:#x}"
                 )));

@@ -11,7 +11,10 @@ use glow::HasContext as _;
 
 use super::context::Device;
 use super::layout::BINDINGS;
-use crate::{Error, Result};
+use crate::{Error, Result, limits};
+
+/// What a software renderer takes to compile a program, bytes.
+const COMPILING: u64 = 16 << 20;
 
 macro_rules! sources {
     ($($path:literal),* $(,)?) => {
@@ -114,6 +117,7 @@ impl Program {
     }
 
     fn link_texts(device: &Rc<Device>, name: &str, texts: Vec<(u32, String, Vec<String>)>) -> Result<Self> {
+        limits::room(COMPILING, "a shader")?;
         let gl = device.gl();
         let raw = unsafe { gl.create_program() }.map_err(|reason| Error::Gl(format!("{name}: {reason}")))?;
         let program = Self { device: device.clone(), raw };

@@ -138,6 +138,11 @@ impl Computer {
         let info = Arc::new(device.info().clone());
         Self { device, info, renderer: None, warned: false }
     }
+
+    /// Lets go of what renders, as after a panic in it; the next photo gets another.
+    pub fn start_over(&mut self) {
+        self.renderer = None;
+    }
 }
 
 impl<'a> Job<'a> {

@@ -161,6 +161,11 @@ impl Photo {
         Self { frame: self.frame, pixels, source }
     }
 
+    /// What is known of the picture without any of its pixels, and without what else an OpenEXR file held.
+    pub(crate) fn without_pixels(&self) -> Self {
+        Self { frame: self.frame, pixels: Vec::new(), source: Source { exr: None, ..self.source.clone() } }
+    }
+
     /// Columns of the picture.
     pub fn width(&self) -> u32 {
         self.frame.width

@@ -116,7 +116,11 @@ pub(super) fn check_size(width: u32, height: u32) -> std::result::Result<usize, 
         count if count > MAX_PIXELS => {
             Err(format!("it says that it has {width} × {height} pixels, more than {MAX_PIXELS}").into())
         }
-        count => Ok(count),
+        count => {
+            // Pixels, and the samples that they are made from.
+            crate::limits::room(24 * count as u64, &format!("a photo of {width} × {height} pixels"))?;
+            Ok(count)
+        }
     }
 }
 

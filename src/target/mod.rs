@@ -228,7 +228,10 @@ pub fn check(path: &Path, overwrite: bool) -> Result<()> {
 /// # Errors
 /// Those of [`Target::new`] and [`Target::write`].
 pub fn write_json(path: &Path, value: &impl Serialize, overwrite: bool) -> Result<()> {
-    write_text(path, &json(path, value)?, overwrite)
+    Target::new(path, overwrite)?.write(&|| false, |sink| {
+        serde_json::to_writer_pretty(&mut *sink, value)?;
+        Ok(sink.write_all(b"\n")?)
+    })
 }
 
 /// Writes a text.
@@ -282,7 +285,7 @@ pub fn make_folder(path: &Path) -> Result<()> {
 }
 
 /// The folder that a path is in.
-fn folder(path: &Path) -> &Path {
+pub fn folder(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 

@@ -3,6 +3,7 @@
 mod ask;
 mod device;
 mod files;
+mod memory;
 mod menu;
 mod strips;
 
@@ -15,7 +16,7 @@ use egui::{CentralPanel, Color32, Key, Modifiers, Panel, RawInput, Ui};
 use super::canvas::{self, Canvas, Probe};
 use super::control::{self, Told};
 use super::document::Document;
-use super::loader::{Loader, Wake};
+use super::loader::{Loader, Read, Wake};
 use super::model::{Look, Work, work};
 use super::shortcuts::{self, Command};
 use super::stage::{Counts, Stage, Times};
@@ -23,14 +24,17 @@ use super::study::Study;
 use super::task::{State, Task};
 use super::timings::Timings;
 use super::{panels, viewing};
-use crate::Result;
 use crate::gpu::paint::Painter;
 use crate::gpu::{Device, Screen};
 use crate::plan::Plan;
+use crate::printable::printable;
 use crate::scene::{FindOptions, Found};
+use crate::{Result, panics};
 
 use files::Files;
 pub(super) use files::LookFile;
+use memory::Budget;
+pub use memory::PIXEL_BYTES;
 
 /// Milliseconds of plan, spectrum, composite and view from which on a drag is shown by previews.
 const SLOW: f64 = 33.0;
@@ -47,6 +51,7 @@ pub struct App {
     look: Look,
     search: Option<Search>,
     files: Files,
+    budget: Budget,
     documents: Vec<(u64, Document)>,
     current: usize,
     next: u64,
@@ -102,6 +107,7 @@ impl App {
             look,
             search: None,
             files: Files::default(),
+            budget: Budget::default(),
             documents: Vec::new(),
             current: 0,
             next: 0,
@@ -227,9 +233,10 @@ impl App {
             self.ui(ui, screen);
         });
         self.settle(before);
+        self.keep_within_budget();
         self.remember_theme();
         screen.clear(opaque(context.global_style().visuals.extreme_bg_color));
-        let again = match self.draw(screen) {
+        let again = match panics::caught(|| self.draw(screen)) {
             // What fails on a device that is lost is no news of the picture.
             Err(error) if self.painter.device().is_lost() => return Err(error),
             drawn => drawn.unwrap_or_else(|error| {
@@ -251,20 +258,23 @@ impl App {
 
     /// Takes what was read in the background.
     fn take_in(&mut self) {
-        for result in self.loader.take() {
-            match result {
-                Ok(document) => {
+        for Read { document, result } in self.loader.take() {
+            match (document, result) {
+                (Some(number), read) => self.wake(number, read),
+                (None, Ok(document)) => {
                     self.remember_photo(&document.path);
                     self.add(document);
+                    // While many are read, those before are let go of as the next come in.
+                    self.keep_within_budget();
                 }
-                Err(error) => self.notice(error.to_string()),
+                (None, Err(error)) => self.notice(error.to_string()),
             }
         }
         self.take_in_files();
         if let Some(Search { document, options, task }) = self.search.take() {
             match task.poll() {
                 State::Running => self.search = Some(Search { document, options, task }),
-                State::Failed => self.notice("the search for lights failed".into()),
+                State::Failed(error) => self.notice(format!("the search for lights failed: {error}")),
                 State::Done(found) => {
                     let searched = self.documents.iter_mut().find(|(number, _)| *number == document);
                     if let Some((_, document)) = searched {
@@ -285,7 +295,7 @@ impl App {
         if before.is_none_or(|before| work(&before, &document.known_look()) >= Work::Plan) {
             self.moved = self.context.time();
         }
-        if self.search.is_none() && document.wants_search() {
+        if self.search.is_none() && document.wants_search() && !document.is_asleep() {
             let (look, photo) = (document.look.clone(), document.photo.clone());
             let task = Task::start("search", &self.wake, move || look.find(&photo));
             match task {
@@ -299,6 +309,7 @@ impl App {
     }
 
     fn notice(&mut self, text: String) {
+        let text = printable(&text).into_owned();
         if !self.notices.contains(&text) {
             self.notices.push(text);
         }
@@ -308,6 +319,11 @@ impl App {
     fn draw(&mut self, screen: &Screen) -> Result<Duration> {
         let Some(placement) = self.canvas.placement else { return Ok(Duration::MAX) };
         let Some((number, document)) = self.documents.get(self.current) else { return Ok(Duration::MAX) };
+        if document.is_asleep() {
+            // Nothing of another photo under its name.
+            self.stage.clear();
+            return Ok(Duration::MAX);
+        }
         let still = self.context.time() - self.moved;
         let preview = self.cost > SLOW && still < SETTLED && self.context.egui_is_using_pointer();
         let done = self.stage.counts();

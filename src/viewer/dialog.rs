@@ -94,7 +94,7 @@ impl Dialog {
             State::Done(Some(paths)) => Answer::Paths(paths),
             // rfd tells of one that was closed and of one that could not be shown alike.
             State::Done(None) if self.started.elapsed() > SHOWN => Answer::Paths(Vec::new()),
-            State::Done(None) | State::Failed => Answer::Missing,
+            State::Done(None) | State::Failed(_) => Answer::Missing,
         }
     }
 }

@@ -12,6 +12,7 @@ use super::viewing::Viewing;
 use crate::Result;
 use crate::frame::{Frame, Window};
 use crate::photo::{self, Photo};
+use crate::printable;
 use crate::scene::{FindOptions, Found, Ghost, Light};
 
 /// The most pixels that are computed live: one tile of the renderer's, 4 Mpx.
@@ -56,6 +57,10 @@ pub struct Document {
     pub(super) selected_ghost: Option<(usize, Ghost)>,
     /// The lens that its table was made from.
     pub(super) lens_before: LookLens,
+    /// When it was last chosen among the open ones, by a count.
+    pub(super) seen: u64,
+    /// Whether it lets go of its pixels and could not be read again.
+    pub(super) unreadable: bool,
     /// Whether a control of the threshold is at hand, so that what it tells from the rest is to be seen.
     pub(super) sets_threshold: bool,
 }
@@ -95,6 +100,8 @@ impl Document {
             light_before: None,
             shows_light: None,
             selected_ghost: None,
+            seen: 0,
+            unreadable: false,
             sets_threshold: false,
         }
     }
@@ -102,6 +109,29 @@ impl Document {
     /// The pixels that are shown, linear RGBA, row by row from the top.
     pub fn pixels(&self) -> &[[f32; 4]] {
         self.means.as_ref().unwrap_or(&self.photo.pixels)
+    }
+
+    /// The bytes of its pixels.
+    pub(super) fn bytes(&self) -> usize {
+        size_of::<[f32; 4]>() * (self.photo.pixels.len() + self.means.as_ref().map_or(0, Vec::len))
+    }
+
+    /// Lets go of the pixels, and of all else of the file that is not needed to show what is set.
+    pub(super) fn sleep(&mut self) {
+        self.photo = Arc::new(self.photo.without_pixels());
+        self.means = None;
+    }
+
+    /// Whether it has let go of its pixels.
+    pub(super) fn is_asleep(&self) -> bool {
+        self.photo.pixels.is_empty()
+    }
+
+    /// Takes the pixels of the same file, read again, and what was found in it; all that is set stays.
+    pub(super) fn wake(&mut self, fresh: Self) {
+        (self.photo, self.means, self.frame, self.shrunk) = (fresh.photo, fresh.means, fresh.frame, fresh.shrunk);
+        self.gamut = fresh.gamut;
+        self.set_found(fresh.searched, fresh.found);
     }
 
     /// The lights, found or listed, muted ones too.
@@ -208,9 +238,9 @@ impl Document {
         self.selected_ghost = self.selected_ghost.take().filter(|&(index, _)| index < ghosts);
     }
 
-    /// The file's name, without its folder.
+    /// The file's name, without its folder, as it can be shown.
     pub fn name(&self) -> String {
-        self.path.file_name().unwrap_or(self.path.as_os_str()).to_string_lossy().into_owned()
+        printable::line(&self.path.file_name().unwrap_or(self.path.as_os_str()).to_string_lossy())
     }
 
     /// Where a point of the picture plane lies among the shown pixels, counted from their top left corner.

@@ -61,6 +61,9 @@ impl Export {
     /// # Errors
     /// [`Error::Write`] where the system gives no thread.
     pub fn start(document: &Document, subject: Subject, path: &Path, wake: &Wake) -> Result<Self> {
+        if document.is_asleep() {
+            return Err(Error::write(path, "its photo is not there yet"));
+        }
         let step = Mutex::new(STEPS[0]);
         let progress = Arc::new(Progress { step, cancelled: AtomicBool::new(false), wake: wake.clone() });
         let (photo, look) = (document.photo.clone(), document.look.clone());
@@ -91,7 +94,7 @@ impl Export {
         match self.task.poll() {
             State::Running => None,
             State::Done(result) => Some(result),
-            State::Failed => Some(Err(Error::write(&self.path, "its thread failed"))),
+            State::Failed(error) => Some(Err(error.in_frame(&self.path))),
         }
     }
 }

@@ -46,7 +46,7 @@ mod timings;
 mod viewing;
 mod window;
 
-pub use app::{App, Shown};
+pub use app::{App, PIXEL_BYTES, Shown};
 pub use control::Told;
 pub use document::{Document, LIVE_PIXELS};
 pub use export::Subject;

@@ -284,7 +284,7 @@ impl Stage {
     /// # Errors
     /// [`crate::Error::Gl`] where the driver refuses.
     pub fn study(&mut self, document: &Document, moving: bool, context: &egui::Context) -> Result<(bool, bool)> {
-        let news = self.study.take_in(context);
+        let news = self.study.take_in(context)?;
         let (Some(plan), Some(scene), Some(_)) = (&self.plan, &self.made.scene, &self.made.look) else {
             return Ok((news, false));
         };

@@ -97,16 +97,16 @@ impl<Q: PartialEq, A: Send + 'static> Finding<Q, A> {
     }
 
     /// Whether an answer has come in.
-    fn take_in(&mut self) -> bool {
+    fn take_in(&mut self) -> Result<bool> {
         match self.task.as_ref().map(Task::poll) {
-            None | Some(State::Running) => false,
-            Some(State::Failed) => {
+            None | Some(State::Running) => Ok(false),
+            Some(State::Failed(error)) => {
                 self.task = None;
-                false
+                Err(error)
             }
             Some(State::Done(answer)) => {
                 (self.task, self.known) = (None, Some(answer));
-                true
+                Ok(true)
             }
         }
     }
@@ -128,14 +128,17 @@ impl Study {
     }
 
     /// Takes in what has been worked out; whether there was anything.
-    pub fn take_in(&mut self, context: &Context) -> bool {
-        let mut news = self.certificate.take_in() | self.section.take_in() | self.convergence.take_in();
-        if self.error_map.take_in() {
+    ///
+    /// # Errors
+    /// [`crate::Error::Internal`] where one of them came to grief, once.
+    pub fn take_in(&mut self, context: &Context) -> Result<bool> {
+        let mut news = self.certificate.take_in()? | self.section.take_in()? | self.convergence.take_in()?;
+        if self.error_map.take_in()? {
             news = true;
             let image = self.error_map.known.take();
             self.error_texture = image.map(|image| context.load_texture("error", image, TextureOptions::NEAREST));
         }
-        news
+        Ok(news)
     }
 
     /// Lets go of what is known of another picture.
@@ -238,5 +241,25 @@ impl Study {
     /// The error all over the picture, in false colours.
     pub fn error_map(&self) -> Option<&TextureHandle> {
         self.error_texture.as_ref()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+    use std::sync::mpsc::channel;
+
+    use super::*;
+
+    #[test]
+    fn an_answer_that_came_to_grief_is_told_once() {
+        let (sender, woken) = channel();
+        let wake: Wake = Arc::new(move || sender.send(()).unwrap());
+        let mut finding = Finding::<u32, u32>::new();
+        finding.begin(1, &wake, || panic!("as it should"));
+        woken.recv().unwrap();
+        assert!(finding.take_in().is_err_and(|error| error.to_string().contains("as it should")));
+        assert!(matches!(finding.take_in(), Ok(false)));
+        assert!(!finding.wants(&1), "it is not asked again and again");
     }
 }

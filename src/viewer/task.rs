@@ -5,10 +5,11 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 
 use super::loader::Wake;
+use crate::{Error, Result, panics};
 
 /// Work under way.
 pub struct Task<T> {
-    receiver: Receiver<T>,
+    receiver: Receiver<Result<T>>,
 }
 
 /// Wakes the window when it is dropped.
@@ -21,14 +22,14 @@ impl Drop for WakeAfterwards {
 }
 
 /// What has become of a task.
-#[derive(Debug, PartialEq)]
+#[derive(Debug)]
 pub enum State<T> {
     /// It goes on.
     Running,
     /// It came to an end, with this.
     Done(T),
-    /// It came to an end without a result.
-    Failed,
+    /// It came to an end by a panic, or its result has been taken.
+    Failed(Error),
 }
 
 impl<T: Send + 'static> Task<T> {
@@ -44,7 +45,7 @@ impl<T: Send + 'static> Task<T> {
             // Moved in after it, and so gone before the window is woken, even where the work panics.
             let sender = sender;
             // The other end is gone where nobody wants the result any more.
-            let _ = sender.send(work());
+            let _ = sender.send(panics::caught(|| Ok(work())));
         })?;
         Ok(Self { receiver })
     }
@@ -52,9 +53,10 @@ impl<T: Send + 'static> Task<T> {
     /// Looks after it; its result is there once.
     pub fn poll(&self) -> State<T> {
         match self.receiver.try_recv() {
-            Ok(result) => State::Done(result),
+            Ok(Ok(result)) => State::Done(result),
+            Ok(Err(error)) => State::Failed(error),
             Err(TryRecvError::Empty) => State::Running,
-            Err(TryRecvError::Disconnected) => State::Failed,
+            Err(TryRecvError::Disconnected) => State::Failed(Error::Internal { what: "a thread is gone".into() }),
         }
     }
 }
@@ -72,8 +74,8 @@ mod tests {
         let wake: Wake = Arc::new(move || sender.send(()).unwrap());
         let task = Task::start("test", &wake, || 7).unwrap();
         receiver.recv().unwrap();
-        assert_eq!(task.poll(), State::Done(7));
-        assert_eq!(task.poll(), State::Failed);
+        assert!(matches!(task.poll(), State::Done(7)));
+        assert!(matches!(task.poll(), State::Failed(_)));
     }
 
     #[test]
@@ -82,6 +84,7 @@ mod tests {
         let wake: Wake = Arc::new(move || sender.send(()).unwrap());
         let task = Task::<()>::start("test", &wake, || panic!("as it should")).unwrap();
         receiver.recv().unwrap();
-        assert_eq!(task.poll(), State::Failed);
+        let State::Failed(error) = task.poll() else { panic!("it has no result") };
+        assert_eq!(error.to_string(), "an internal error (as it should); please report it");
     }
 }

@@ -7,11 +7,14 @@ mod harmonics;
 mod lights;
 mod look;
 mod outputs;
+mod panics;
 mod plan;
 mod refusals;
 mod rex;
+mod scarce;
 mod sequence;
 mod tables;
+mod terminal;
 mod tradeoff;
 mod view;
 

@@ -2,6 +2,7 @@
 
 mod files;
 mod ghosts;
+mod many;
 
 use std::path::Path;
 use std::rc::Rc;

@@ -1,5 +1,6 @@
 //! `vglare apply`: the main job, for one photo or for the photos of a shot.
 
+mod fault;
 mod job;
 mod look;
 mod names;
@@ -8,6 +9,7 @@ mod pipeline;
 mod report;
 mod run;
 mod sequence;
+mod spool;
 mod summary;
 mod tally;
 
@@ -20,10 +22,10 @@ use super::lights::FindArgs;
 use super::numbers::finite;
 use super::reading::ReadArgs;
 use super::scene::SceneArgs;
-use crate::Result;
 use crate::certificate::Verify;
 use crate::look::Look;
 use crate::photo::{Depth, ToneMap};
+use crate::{Result, limits};
 
 use look::LookArgs;
 
@@ -128,6 +130,18 @@ struct SequenceArgs {
     /// Finish each photo before the next is read: with one photo in memory at a time instead of up to three
     #[arg(long)]
     one_by_one: bool,
+
+    /// Panic in a step of one photo, to test that the others are done; see src/cli/apply/fault.rs
+    #[arg(long, value_name = "STEP:PHOTO", hide = true)]
+    panic_in: Option<fault::Fault>,
+}
+
+impl SequenceArgs {
+    /// Whether the next photo is read and the last written while one is computed: not where memory is limited, since what
+    /// a driver can have then must not change under its hands.
+    fn side_by_side(&self) -> bool {
+        !self.one_by_one && !limits::memory_is_limited()
+    }
 }
 
 /// How the result is held against the truth.

@@ -6,6 +6,8 @@ use crate::{Error, Result};
 
 /// The field for a photo's own name.
 const NAME: &str = "{name}";
+/// The most bytes that a file's name may have, and so the most digits of a number in it.
+const MOST_BYTES: usize = 255;
 
 /// What an output option names for many photos.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,6 +77,10 @@ impl Names {
                     match part {
                         Part::Text(text) => name.push_str(text),
                         Part::Name => name.push_str(stem),
+                        Part::Number(digits) if *digits > MOST_BYTES => {
+                            let room = format!("a file's name has room for {MOST_BYTES} bytes");
+                            return Err(Error::Usage(format!("a pattern asks for numbers of {digits} digits; {room}")));
+                        }
                         Part::Number(digits) => {
                             let (sign, number) = number(stem).ok_or_else(|| lacks("frame number", given))?;
                             let digits = digits.saturating_sub(sign.len());
@@ -188,6 +194,9 @@ mod tests {
             assert_eq!(of(given, photo).as_deref(), Some(expected), "{given} of {photo}");
         }
         assert_eq!(of("out.####.exr", "lamp.exr"), None, "a number is missing");
+        for (digits, fits) in [(255, true), (256, false), (70_000, false)] {
+            assert_eq!(of(&"#".repeat(digits), "7.exr").is_some(), fits, "{digits} digits");
+        }
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::sync::mpsc::sync_channel;
 use std::thread;
 
-use crate::Result;
+use crate::{Error, Result};
 
 /// Takes `count` things through three steps, in order, until the last step breaks it off.
 ///
@@ -35,8 +35,14 @@ pub fn run<S, A: Send, B: Send>(
         let (give, take) = sync_channel(0);
         let (pass_on, finish) = sync_channel(0);
         // Each ends when the other end of its channel is gone, be it by an error or a panic.
-        scope.spawn(move || (0..count).try_for_each(|index| give.send(first(index))));
-        scope.spawn(move || finish.into_iter().try_for_each(&mut last));
+        thread::Builder::new()
+            .name("read".into())
+            .spawn_scoped(scope, move || (0..count).try_for_each(|index| give.send(first(index))))
+            .map_err(Error::threads)?;
+        thread::Builder::new()
+            .name("write".into())
+            .spawn_scoped(scope, move || finish.into_iter().try_for_each(&mut last))
+            .map_err(Error::threads)?;
         let mut tool = prepare()?;
         let _ = take.into_iter().try_for_each(|thing| pass_on.send(middle(&mut tool, thing)));
         Ok(())

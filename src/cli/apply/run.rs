@@ -1,5 +1,7 @@
 //! The run itself: one photo after the other, or a single one.
 
+use std::thread;
+
 use super::job::Job;
 use super::outputs::{self, Paths, Work};
 use super::report::Report;
@@ -9,7 +11,7 @@ use crate::gpu::Device;
 use crate::job::{Computer, Stages};
 use crate::look::Look;
 use crate::photo::{self, Photo};
-use crate::{Error, Result, target};
+use crate::{Result, limits, panics, target};
 
 /// Lays glare over photos.
 ///
@@ -46,12 +48,22 @@ fn single(args: &Args, paths: &Paths) -> Result<()> {
     }
 }
 
-/// Reads the photo while the GL context opens: neither needs the other, and both take a while.
+/// Reads the photo while the GL context opens: neither needs the other, and both take a while. Where memory is limited,
+/// one after the other: a driver does not survive it that another takes what it was just told to be there.
 fn read(args: &Args, paths: &Paths, look: &Look) -> Result<(Photo, Option<Computer>)> {
-    std::thread::scope(|scope| {
-        let photo = scope.spawn(|| photo::read_with(&paths.input, &args.reading.options()));
-        let device = look.renders().then(|| Device::open(args.accuracy.backend.backends()));
-        let photo = photo.join().unwrap_or_else(|_| Err(Error::read_photo(&paths.input, "the reader failed")))?;
-        Ok((photo, device.transpose()?.map(Computer::new)))
+    let read = || photo::read_with(&paths.input, &args.reading.options());
+    let open = || look.renders().then(|| Device::open(args.accuracy.backend.backends())).transpose();
+    if limits::memory_is_limited() {
+        return Ok((read()?, open()?.map(Computer::new)));
+    }
+    thread::scope(|scope| {
+        let reading = thread::Builder::new().name("read".into()).spawn_scoped(scope, read);
+        let device = open();
+        let photo = match reading {
+            Ok(thread) => thread.join().unwrap_or_else(|panic| Err(panics::error(&*panic))),
+            // Where the system gives no thread, this one has time now.
+            Err(_) => read(),
+        };
+        Ok((photo?, device?.map(Computer::new)))
     })
 }

@@ -1,24 +1,45 @@
 //! Several photos: the next is read and the last written while one is computed.
 
 use super::Args;
+use super::fault::Fault;
 use super::job::Job;
 use super::outputs::{Paths, Sequence};
 use super::pipeline;
 use super::tally::Tally;
-use crate::Result;
 use crate::cli::progress::Progress;
 use crate::gpu::Device;
 use crate::job::Computer;
+use crate::{Error, Result, panics};
 
 /// A photo on its way, or why it is not.
 struct Item<'a> {
+    index: usize,
     paths: &'a Paths,
     job: Result<Job<'a>>,
 }
 
-fn compute<'a>(item: Item<'a>, computer: Option<&mut Computer>, progress: &Progress) -> Item<'a> {
-    let job = item.job.and_then(|mut job| job.compute(computer, progress).map(|()| job));
-    Item { paths: item.paths, job }
+impl<'a> Item<'a> {
+    /// A photo that is worked on in a step; a panic there is its error, and no one else's.
+    fn through(self, step: &str, work: impl FnOnce(&mut Job<'a>) -> Result<()>) -> Self {
+        let Self { index, paths, job } = self;
+        let job = job.and_then(|mut job| {
+            panics::caught(|| {
+                Fault::strike(job.args.sequence.panic_in.as_ref(), step, index);
+                work(&mut job)
+            })?;
+            Ok(job)
+        });
+        Self { index, paths, job }
+    }
+}
+
+fn compute<'a>(item: Item<'a>, mut computer: Option<&mut Computer>, progress: &Progress) -> Item<'a> {
+    let item = item.through("compute", |job| job.compute(computer.as_deref_mut(), progress));
+    if let (Err(Error::Internal { .. }), Some(computer)) = (&item.job, computer) {
+        // What it left half done must not get into the next.
+        computer.start_over();
+    }
+    item
 }
 
 /// Lays glare over the photos of a sequence.
@@ -36,8 +57,12 @@ pub fn run(args: &Args, sequence: &Sequence) -> Result<()> {
     let mut tally = Tally::new(args, sequence, &progress);
     let read = |index: usize| {
         let paths = &frames[index];
-        let job = paths.make_folders().and_then(|()| Job::read(args, paths, &look));
-        Item { paths, job }
+        let job = panics::caught(|| {
+            Fault::strike(args.sequence.panic_in.as_ref(), "read", index);
+            paths.make_folders()?;
+            Job::read(args, paths, &look)
+        });
+        Item { index, paths, job }
     };
     let open = || {
         let device = look.renders().then(|| Device::open(args.accuracy.backend.backends()));
@@ -45,10 +70,10 @@ pub fn run(args: &Args, sequence: &Sequence) -> Result<()> {
     };
     let compute = |computer: &mut Option<Computer>, item| compute(item, computer.as_mut(), &hidden);
     let write = |item: Item<'_>| {
-        let done = item.job.and_then(|mut job| job.write().map(|()| job));
-        tally.add(item.paths, done)
+        let item = item.through("write", Job::write);
+        tally.add(item.paths, item.job)
     };
-    pipeline::run(frames.len(), !args.sequence.one_by_one, read, open, compute, write)?;
+    pipeline::run(frames.len(), args.sequence.side_by_side(), read, open, compute, write)?;
     let result = tally.finish();
     drop(progress);
     result

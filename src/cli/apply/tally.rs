@@ -7,16 +7,16 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use serde::Serialize;
-use serde_json::Value;
 
 use super::Args;
 use super::job::Job;
 use super::outputs::{Paths, Sequence};
 use super::report::Report;
+use super::spool::Spool;
 use crate::cli::progress::Progress;
-use crate::cli::stdout;
+use crate::cli::{stderr, stdout};
 use crate::gpu::Info;
-use crate::{Error, Result, target};
+use crate::{Error, Result, panics, target};
 
 /// What has become of the photos so far.
 pub struct Tally<'a> {
@@ -34,8 +34,8 @@ pub struct Tally<'a> {
     missed: usize,
     worst: Option<Worst>,
     info: Option<Arc<Info>>,
-    /// A report a photo, where one is asked for.
-    reports: Vec<Value>,
+    /// A report a photo, once there is one and where it is asked for.
+    reports: Option<Spool>,
 }
 
 /// The photo with the largest error.
@@ -55,9 +55,18 @@ struct Failed {
 #[derive(Serialize)]
 struct SequenceReport<'a> {
     vglare: &'static str,
-    frames: &'a [Value],
+    /// A report each.
+    frames: Frames<'a>,
     failed: &'a [Failed],
     summary: Summary,
+}
+
+/// The reports of all photos.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Frames<'a> {
+    Some(&'a Spool),
+    None([(); 0]),
 }
 
 #[derive(Serialize)]
@@ -89,19 +98,19 @@ impl<'a> Tally<'a> {
             missed: 0,
             worst: None,
             info: None,
-            reports: Vec::new(),
+            reports: None,
         }
     }
 
     /// Counts a photo that was written, or why it was not; says whether to go on.
     pub fn add(&mut self, paths: &Paths, done: Result<Job<'_>>) -> ControlFlow<()> {
-        let result = done.and_then(|job| self.written(&job));
+        let result = done.and_then(|job| panics::caught(|| self.written(&job)));
         let total = self.sequence.frames.len();
         if let Err(error) = result {
             let error = error.in_frame(&paths.input);
             self.failed.push(Failed { input: paths.input.display().to_string(), error: error.to_string() });
             if self.args.sequence.keep_going {
-                self.progress.aside(|| eprintln!("vglare: {error}"));
+                self.progress.aside(|| stderr::tell(&error));
             }
             self.first_error.get_or_insert(error);
             if !self.args.sequence.keep_going {
@@ -128,13 +137,18 @@ impl<'a> Tally<'a> {
             }
         }
         if let Some(path) = &self.args.output_options.report {
-            let report = serde_json::to_value(Report::new(job)).map_err(|error| Error::write(path, error))?;
-            self.reports.push(report);
+            let add = |reports: &mut Option<Spool>| {
+                let reports = match reports {
+                    Some(reports) => reports,
+                    none => none.insert(Spool::new(target::folder(path))?),
+                };
+                reports.add(&Report::new(job))
+            };
+            add(&mut self.reports).map_err(|error| Error::write(path, error))?;
         }
         self.progress.aside(|| {
-            for warning in &job.work.warnings {
-                eprintln!("vglare: warning: {}: {warning}", job.paths.input.display());
-            }
+            let input = job.paths.input.display();
+            stderr::warn(job.work.warnings.iter().map(|warning| format!("{input}: {warning}")));
             if self.args.verbose { stdout::print(|out| line(out, job)) } else { Ok(()) }
         })
     }
@@ -172,7 +186,7 @@ impl<'a> Tally<'a> {
     fn report(&self, seconds: f64) -> SequenceReport<'_> {
         SequenceReport {
             vglare: env!("CARGO_PKG_VERSION"),
-            frames: &self.reports,
+            frames: self.reports.as_ref().map_or(Frames::None([]), Frames::Some),
             failed: &self.failed,
             summary: Summary {
                 photos: self.sequence.frames.len(),
@@ -182,7 +196,7 @@ impl<'a> Tally<'a> {
                 worst_error: self.worst.as_ref().map(|worst| worst.measured),
                 worst_photo: self.worst.as_ref().map(|worst| worst.photo.display().to_string()),
                 seconds,
-                side_by_side: !self.args.sequence.one_by_one,
+                side_by_side: self.args.sequence.side_by_side(),
             },
         }
     }

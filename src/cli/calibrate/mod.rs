@@ -8,7 +8,7 @@ use std::io::{self, Write};
 use comfy_table::{CellAlignment, Table, presets};
 
 use super::progress::Progress;
-use super::{BackendChoice, stdout};
+use super::{BackendChoice, stderr, stdout};
 use crate::Result;
 use crate::calibration;
 use crate::gpu::Device;
@@ -85,7 +85,7 @@ pub fn run(args: &Args) -> Result<()> {
         None
     } else {
         if let Some(warning) = calibration::keep(device.info(), fitted.model())? {
-            eprintln!("vglare: warning: {warning}");
+            stderr::warn([warning]);
         }
         Some(calibration::path()?)
     };

@@ -86,7 +86,7 @@ pub fn run(args: &Args) -> Result<()> {
     warn(&planned.warnings);
     let budget = look.accuracy.goal.budget();
     let told = Told { photo: &args.photo, frame, look: &look, scene: &scene, planned: &planned, info, budget };
-    stdout::print(|out| if args.json { told.json(out) } else { told.text(out) })
+    if args.json { stdout::json(|out| told.json(out)) } else { stdout::print(|out| told.text(out)) }
 }
 
 /// What is printed.

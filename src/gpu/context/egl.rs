@@ -13,17 +13,15 @@ use glutin_egl_sys::egl;
 use glutin_egl_sys::egl::types::{EGLContext, EGLDisplay, EGLint};
 use libloading::Library;
 
-use super::{Platform, REQUIRED};
+use super::{Platform, REQUIRED, load};
 
 /// `EGL_PLATFORM_SURFACELESS_MESA`, of the extension EGL_MESA_platform_surfaceless.
 const PLATFORM_SURFACELESS: egl::types::EGLenum = 0x31DD;
-const LIBRARY: &str = "libEGL.so.1";
+pub(super) const LIBRARY: &str = "libEGL.so.1";
 
 /// A core context of the required version, current on this thread.
 pub(super) fn open() -> Result<(glow::Context, Box<dyn Platform>), String> {
-    if unsafe { Library::new(LIBRARY) }.is_err() {
-        return Err(format!("{LIBRARY} was not found"));
-    }
+    let _loaded = load(LIBRARY)?;
     let mut reasons = Vec::new();
     match Device::query_devices() {
         Ok(devices) => {
@@ -95,7 +93,7 @@ impl Drop for Surfaceless {
 
 /// glutin has no surfaceless display, so this route calls EGL itself.
 fn open_surfaceless() -> Result<(glow::Context, Box<dyn Platform>), String> {
-    let library = unsafe { Library::new(LIBRARY) }.map_err(|error| error.to_string())?;
+    let library = load(LIBRARY)?;
     let egl = egl::Egl::load_with(|name| match CString::new(name) {
         Ok(name) => unsafe { library.get::<*const c_void>(name.as_bytes_with_nul()) }.map_or(ptr::null(), |f| *f),
         Err(_) => ptr::null(),

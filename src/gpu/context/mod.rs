@@ -1,6 +1,7 @@
 //! OpenGL 4.3 with and without a window: GLX or EGL on a display, EGL where there is a driver, OSMesa where there is none.
 
 mod egl;
+mod memory;
 mod osmesa;
 pub(in crate::gpu) mod window;
 
@@ -10,8 +11,11 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use glow::HasContext as _;
+use libloading::Library;
 
-use crate::{Error, Result};
+use crate::{Error, Result, panics};
+
+pub use memory::be_sparing;
 
 /// The version of OpenGL that every pass is written for.
 pub const REQUIRED: (u8, u8) = (4, 3);
@@ -42,6 +46,36 @@ impl Backend {
             Self::Window => "libgl1 libegl1 libgl1-mesa-dri libx11-6 libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0",
         }
     }
+}
+
+impl Backend {
+    /// What a library is called that brings it.
+    fn library(self) -> &'static str {
+        match self {
+            Self::Egl => egl::LIBRARY,
+            Self::OsMesa => osmesa::NAMES[0],
+            Self::Window => "libGL or libEGL",
+        }
+    }
+}
+
+/// Opens something of a library that has to be trusted to be what its name says: glutin and glow panic where it lacks
+/// what they call.
+fn trusting<T>(library: &str, open: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+    panics::caught(|| Ok(open())).unwrap_or_else(|error| match error {
+        Error::Internal { what } => Err(format!("{library} is not what its name says: {what}")),
+        other => Err(other.to_string()),
+    })
+}
+
+/// Loads a library.
+fn load(name: &str) -> Result<Library, String> {
+    unsafe { Library::new(name) }.map_err(|error| {
+        // One that is there may be damaged, of another machine, or lack others.
+        let reason = std::error::Error::source(&error).map_or_else(|| error.to_string(), ToString::to_string);
+        let absent = reason.contains(name) && reason.contains("No such file");
+        if absent { format!("{name} was not found") } else { format!("{name} cannot be loaded: {reason}") }
+    })
 }
 
 impl fmt::Display for Backend {
@@ -127,8 +161,10 @@ impl Device {
     /// Opens the first of `backends` that gives OpenGL 4.3 or later and makes it current on this thread.
     ///
     /// # Errors
-    /// [`Error::NoContext`] with the reason for each backend that failed and the packages that would mend it.
+    /// [`Error::NoContext`] with the reason for each backend that failed and the packages that would mend it;
+    /// [`Error::Memory`] and [`Error::Threads`] where the system's limits leave a driver too little.
     pub fn open(backends: &[Backend]) -> Result<Rc<Self>> {
+        memory::room_to_open()?;
         let mut reasons = Vec::new();
         for &backend in backends {
             match Self::try_open(backend) {
@@ -146,12 +182,14 @@ impl Device {
     /// # Errors
     /// Why it does not work, in words.
     pub fn try_open(backend: Backend) -> Result<Self, String> {
-        let (gl, platform): (glow::Context, Box<dyn Platform>) = match backend {
-            Backend::Egl => egl::open()?,
-            Backend::OsMesa => osmesa::open()?,
-            Backend::Window => return Err("is not opened without a window".into()),
-        };
-        Self::new(gl, backend, platform)
+        trusting(backend.library(), || {
+            let (gl, platform): (glow::Context, Box<dyn Platform>) = match backend {
+                Backend::Egl => egl::open()?,
+                Backend::OsMesa => osmesa::open()?,
+                Backend::Window => return Err("is not opened without a window".into()),
+            };
+            Self::new(gl, backend, platform)
+        })
     }
 
     /// The device of a context that is current.

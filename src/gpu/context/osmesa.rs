@@ -5,9 +5,9 @@ use std::ptr;
 
 use libloading::Library;
 
-use super::{Platform, REQUIRED};
+use super::{Platform, REQUIRED, load};
 
-const NAMES: [&str; 3] = ["libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"];
+pub(super) const NAMES: [&str; 3] = ["libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"];
 
 // From GL/osmesa.h.
 const FORMAT: c_int = 0x22;
@@ -46,10 +46,7 @@ impl Drop for OsMesa {
 
 /// A core context of the required version, current on this thread.
 pub(super) fn open() -> Result<(glow::Context, Box<dyn Platform>), String> {
-    let library = NAMES
-        .iter()
-        .find_map(|name| unsafe { Library::new(name) }.ok())
-        .ok_or_else(|| format!("{} was not found", NAMES[0]))?;
+    let library = load(NAMES[0]).or_else(|first| NAMES[1..].iter().find_map(|name| load(name).ok()).ok_or(first))?;
     let missing = |error: libloading::Error| format!("{} is not as expected: {error}", NAMES[0]);
     let create = *unsafe { library.get::<CreateContextAttribs>(b"OSMesaCreateContextAttribs\0") }.map_err(missing)?;
     let make_current = *unsafe { library.get::<MakeCurrent>(b"OSMesaMakeCurrent\0") }.map_err(missing)?;

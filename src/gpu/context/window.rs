@@ -18,7 +18,7 @@ use winit::platform::x11::register_xlib_error_hook;
 use winit::raw_window_handle::{HasDisplayHandle as _, HasWindowHandle as _};
 use winit::window::{Window, WindowAttributes};
 
-use super::{Backend, Device, Platform, REQUIRED};
+use super::{Backend, Device, Platform, REQUIRED, memory, trusting};
 use crate::{Error, Result};
 
 /// What winit loads at run time on X11 and would panic without.
@@ -64,16 +64,20 @@ impl Display {
     /// The first of GLX and EGL that gives OpenGL 4.3 or later.
     ///
     /// # Errors
-    /// [`Error::NoContext`] with the reason for each.
+    /// [`Error::NoContext`] with the reason for each; [`Error::Memory`] and [`Error::Threads`] as in [`Device::open`].
     pub fn open<T>(event_loop: &EventLoop<T>) -> Result<Self> {
+        memory::room_to_open()?;
         // GLX first: on X11 drivers resize its windows more smoothly. Wayland has EGL only.
         let handle =
             event_loop.display_handle().map_err(|error| Error::NoDisplay { reason: error.to_string() })?.as_raw();
         let glx = DisplayApiPreference::Glx(Box::new(register_xlib_error_hook));
         let mut reasons = Vec::new();
         for (name, api) in [("GLX", glx), ("EGL", DisplayApiPreference::Egl)] {
-            let opened = unsafe { GlDisplay::new(handle, api) }.map_err(|error| error.to_string());
-            match opened.and_then(|display| Self::try_open(&display)) {
+            let opened = trusting(Backend::Window.library(), || {
+                let display = unsafe { GlDisplay::new(handle, api) }.map_err(|error| error.to_string())?;
+                Self::try_open(&display)
+            });
+            match opened {
                 Ok(display) => return Ok(display),
                 Err(reason) => reasons.push(format!("{name}: {reason}")),
             }

@@ -3,6 +3,7 @@
 use egui::{Align, Layout, Panel, RichText, Ui};
 
 use super::App;
+use crate::printable;
 
 impl App {
     /// One tab for each document, where there are several.
@@ -15,7 +16,7 @@ impl App {
             ui.horizontal_wrapped(|ui| {
                 for (index, (_, document)) in self.documents.iter().enumerate() {
                     let tab = ui.selectable_label(index == self.current, document.name());
-                    if tab.on_hover_text(document.path.display().to_string()).clicked() {
+                    if tab.on_hover_text(printable::line(&document.path.to_string_lossy())).clicked() {
                         self.current = index;
                     }
                     if ui.small_button("×").on_hover_text("Close it (Ctrl+W)").clicked() {
@@ -31,13 +32,13 @@ impl App {
 
     /// What is being read, and what went wrong.
     pub(super) fn strips(&mut self, ui: &mut Ui) {
-        let reading: Vec<_> = self.loader.under_way().map(|path| path.display().to_string()).collect();
+        let reading: Vec<_> = self.loader.under_way().map(|path| printable::line(&path.to_string_lossy())).collect();
         if !reading.is_empty() {
             Panel::bottom("reading").show(ui, |ui| {
                 ui.horizontal(|ui| {
                     ui.label(format!("Reading {}", reading.join(", ")));
                     if ui.button("Cancel").clicked() {
-                        self.loader.cancel();
+                        self.stop_reading();
                     }
                 });
             });
