@@ -225,9 +225,7 @@ impl Candidate<'_> {
         let (group, taken) = &self.from[0];
         let channels = taken.iter().filter(|(_, role)| *role != Role::Component(3));
         let channels = channels.map(|&(index, _)| text(&headers[group.part].channels.list[index].name));
-        if let [_, others @ ..] = &self.from[..]
-            && !others.is_empty()
-        {
+        if self.from.len() > 1 {
             return "parts of R, G and B".to_owned();
         }
         group.names.title(headers).unwrap_or_else(|| channels.collect::<Vec<_>>().join(", "))
