@@ -22,15 +22,21 @@ pub(super) fn group4(packed: &[u8], width: usize, wanted: usize) -> Result<Vec<u
 
 /// ITU-T T.4 in one dimension.
 pub(super) fn group3(packed: &[u8], width: usize, wanted: usize, aligned: bool) -> Result<Vec<u8>, Reason> {
-    columns(width)?;
+    let columns = columns(width)?;
     if aligned {
         return Err("it is compressed by CCITT runs without marks, which vglare does not read".into());
     }
     let damaged = |_| Reason::from("its fax codes are damaged");
-    let mut decoder = Group3Decoder::new(packed.iter().map(|&byte| Ok::<_, Infallible>(byte))).map_err(damaged)?;
+    // The decoder wants a mark behind the last row, which libtiff does not write; zeros before a mark are filling.
+    let end_of_page = [0x00, 0x10, 0x01].repeat(3);
+    let bytes = packed.iter().chain(&end_of_page).map(|&byte| Ok::<_, Infallible>(byte));
+    let mut decoder = Group3Decoder::new(bytes).map_err(damaged)?;
     let mut bytes = Vec::new();
     while bytes.len() < wanted {
         let status = decoder.advance().map_err(damaged)?;
+        if decoder.transitions().last() != Some(&columns) {
+            return Err("its fax rows are of another width".into());
+        }
         add_row(&mut bytes, decoder.transitions(), width);
         if status == DecodeStatus::End {
             break;

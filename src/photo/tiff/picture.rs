@@ -36,7 +36,7 @@ pub(super) fn decode<C: Code>(
     };
     let (width, bytes) = match layout.compression {
         Compression::Jpeg => jpeg(layout, tables, packed, check)?,
-        _ => webp(packed, check)?,
+        _ => webp(packed, layout.together(), check)?,
     };
     Ok(Block { width, samples: bytes.into_iter().map(|code| C::cut(u64::from(code))).collect() })
 }
@@ -69,10 +69,20 @@ fn jpeg(
     Ok((width, decoder.decode()?))
 }
 
-fn webp(packed: Vec<u8>, check: impl Fn((u32, u32), usize) -> Check<usize>) -> Result<(usize, Vec<u8>), Reason> {
+fn webp(
+    packed: Vec<u8>,
+    wanted: usize,
+    check: impl Fn((u32, u32), usize) -> Check<usize>,
+) -> Result<(usize, Vec<u8>), Reason> {
     let mut decoder = WebPDecoder::new(Cursor::new(packed))?;
-    let width = check(decoder.dimensions(), if decoder.has_alpha() { 4 } else { 3 })?;
+    let stored = if decoder.has_alpha() { 4 } else { 3 };
+    // A tile that is opaque throughout may hold no alpha, and one without alpha an opaque one.
+    let width = check(decoder.dimensions(), if matches!(wanted, 3 | 4) { wanted } else { stored })?;
     let mut bytes = zeroed(decoder.output_buffer_size().ok_or("it is too large")?)?;
     decoder.read_image(&mut bytes)?;
+    if stored != wanted {
+        let pixels = bytes.chunks_exact(stored);
+        bytes = pixels.flat_map(|pixel| pixel.iter().copied().chain([u8::MAX]).take(wanted)).collect();
+    }
     Ok((width, bytes))
 }
