@@ -39,10 +39,14 @@ impl Cmyk {
         if profile.color_space != DataColorSpace::Cmyk {
             return Err("it is of another colour space".into());
         }
-        let intent = RenderingIntent::RelativeColorimetric;
-        let options = TransformOptions { rendering_intent: intent, ..TransformOptions::default() };
         let srgb = ColorProfile::new_srgb();
-        Ok(Self::Profile(profile.create_transform_f32(Layout::Rgba, &srgb, Layout::Rgb, options)?))
+        let way = |rendering_intent| {
+            let options = TransformOptions { rendering_intent, ..TransformOptions::default() };
+            profile.create_transform_f32(Layout::Rgba, &srgb, Layout::Rgb, options)
+        };
+        // A profile without the table of an intent means that of the perceptual one: ICC.1:2022, 8.4.1.
+        let way = way(RenderingIntent::RelativeColorimetric).or_else(|_| way(RenderingIntent::Perceptual))?;
+        Ok(Self::Profile(way))
     }
 
     /// What decodes the RGB.

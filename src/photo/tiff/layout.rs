@@ -249,9 +249,10 @@ fn side<R: Read + Seek>(file: &mut File<R>, page: &Directory, tag: u16) -> Resul
 /// The bits of a sample; alike for all of a pixel.
 fn bits<R: Read + Seek>(file: &mut File<R>, page: &Directory, samples: usize) -> Result<u32, Reason> {
     let bits = file.numbers(page, tag::BITS_PER_SAMPLE, samples)?.unwrap_or_else(|| vec![1]);
-    match bits[..] {
-        [first, ref rest @ ..] if rest.iter().all(|&bits| bits == first) => Ok(u32::try_from(first)?),
-        _ => Err(format!("the samples of its pixels have differing depths, {bits:?} bit").into()),
+    let first = *bits.first().ok_or("it does not say how many bits a sample has")?;
+    match bits.iter().find(|&&bits| bits != first) {
+        None => Ok(u32::try_from(first)?),
+        Some(other) => Err(format!("the samples of its pixels have differing depths, {first} and {other} bit").into()),
     }
 }
 

@@ -23,7 +23,8 @@ pub(super) fn choose<R: Read + Seek>(file: &mut File<R>) -> Result<Page, Reason>
     if file.canon_raw {
         return Err(raw("Canon CR2"));
     }
-    let (mut pages, mut notes) = chain(file)?;
+    let (mut pages, broken) = chain(file)?;
+    let mut notes = Vec::new();
     let mut full = Vec::new();
     for (index, page) in pages.iter().enumerate() {
         if is_full(file, page)? {
@@ -31,6 +32,9 @@ pub(super) fn choose<R: Read + Seek>(file: &mut File<R>) -> Result<Page, Reason>
         }
     }
     if let Some(&index) = full.first() {
+        if broken.is_some() {
+            notes.push("the list of the file's pictures breaks off: there may be more than are told here".to_owned());
+        }
         let page = pages.swap_remove(index);
         check_no_raw(file, &page)?;
         let several = full.len() > 1 || index > 0;
@@ -48,13 +52,17 @@ pub(super) fn choose<R: Read + Seek>(file: &mut File<R>) -> Result<Page, Reason>
             }
         }
     }
+    if let Some(reason) = broken {
+        return Err(reason);
+    }
     notes.push("the file says that its picture is a reduced copy of another, which it does not hold".into());
     let directory = pages.into_iter().next().ok_or("it holds no picture")?;
     Ok(Page { directory, name: None, notes })
 }
 
-/// The directories that hang on one another; the first must be readable.
-fn chain<R: Read + Seek>(file: &mut File<R>) -> Result<(Vec<Directory>, Vec<String>), Reason> {
+/// The directories that hang on one another, and why there are no more where the chain is broken; the first must be
+/// readable.
+fn chain<R: Read + Seek>(file: &mut File<R>) -> Result<(Vec<Directory>, Option<Reason>), Reason> {
     let first = file.first;
     if first == 0 {
         return Err("it holds no picture".into());
@@ -65,14 +73,15 @@ fn chain<R: Read + Seek>(file: &mut File<R>) -> Result<(Vec<Directory>, Vec<Stri
         // Directories that do not overlap cannot be more than the file.
         let page = match file.directory(next) {
             Ok(page) if seen.insert(next) && total <= file.length() => page,
+            Ok(_) => return Ok((pages, Some("the list of its pictures is damaged".into()))),
             Err(reason) if pages.is_empty() => return Err(reason),
-            _ => return Ok((pages, vec!["the list of the file's pictures is damaged behind the first".into()])),
+            Err(reason) => return Ok((pages, Some(reason))),
         };
         total += page.size;
         next = page.next;
         pages.push(page);
     }
-    Ok((pages, Vec::new()))
+    Ok((pages, None))
 }
 
 /// Whether this is a picture in its own right: TIFF 6.0, NewSubfileType (bit 0 a reduced copy, bit 2 a mask), and

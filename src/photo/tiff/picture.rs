@@ -16,6 +16,8 @@ use super::samples::Code;
 
 /// Columns and rows by which such a picture may be larger than it says outside: the rest of a block.
 const MARGIN: u32 = 64;
+/// Scans of a progressive JPEG; each costs the time of a whole picture, and encoders write about ten.
+const MOST_SCANS: usize = 32;
 
 /// The samples of a strip or tile of `size` pixels, of which the picture needs the first `needed`.
 pub(super) fn decode<C: Code>(
@@ -57,7 +59,8 @@ fn jpeg(
         Some([head @ .., 0xff, 0xd9]) if head.len() > 2 => [head, packed.get(2..).unwrap_or_default()].concat(),
         _ => packed,
     };
-    let options = DecoderOptions::default().set_strict_mode(true).set_max_width(65535).set_max_height(65535);
+    let options = DecoderOptions::default().set_strict_mode(true).jpeg_set_max_scans(MOST_SCANS);
+    let options = options.set_max_width(65535).set_max_height(65535);
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(stream), options);
     decoder.decode_headers()?;
     let stored = decoder.input_colorspace().ok_or("it has no colours")?;

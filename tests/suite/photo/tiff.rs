@@ -143,6 +143,10 @@ fn strips_that_are_missing_or_too_short_are_no_grey() {
     packed.tags[3].1 = vec![32773];
     let text = reason(&folder.put("packed.tif", &packed.bytes()));
     assert!(text.contains("strip 1 of 1: it is cut short"), "{text}");
+    // The thumbnail that is left is not the photo.
+    let bytes = include_bytes!("../../inputs/tiff-thumbnail-first.tif");
+    let text = reason(&folder.put("thumbnail.tif", &bytes[..bytes.len() / 2]));
+    assert!(text.contains("the file is cut short"), "{text}");
 }
 
 #[test]

@@ -112,6 +112,12 @@ fn palettes_inks_and_differences_become_colours() {
     let code = |c: usize, x: usize, y: usize| (value(c, x, y) * 255.0).round() / 255.0;
     check("cmyk", &photo, 1e-6, |x, y| [0, 1, 2].map(|c| srgb_light((1.0 - code(c, x, y)) * (1.0 - code(3, x, y)))));
     assert!(photo.source.notes[0].contains("CMYK"), "{:?}", photo.source.notes);
+    // To two codes of 8 bit: white, black, and a full ink of which the profile says L*a*b* 50.196, 20, −30: (0.2361, 0.1515, 0.4072).
+    let photo = read("cmyk-profile");
+    for (pixel, want) in photo.pixels.iter().zip([[1.0; 3], [0.0; 3], [0.2361, 0.1515, 0.4072]]) {
+        assert!((0..3).all(|c| (pixel[c] - want[c]).abs() < 1e-2), "{pixel:?} for {want:?}");
+    }
+    assert!(photo.source.notes[0].contains("through its ICC profile"), "{:?}", photo.source.notes);
     // TIFF 6.0, section 21, with the shares of BT.601; one Cb and Cr to four pixels.
     check("ycbcr", &read("ycbcr-subsampled"), 1e-6, |x, y| {
         let luma = (value(0, x, y) * 255.0).round();
