@@ -74,7 +74,7 @@ mod tests {
         assert!((luminance(64 * 256) - (0.5_f64 / 256.0).exp2()).abs() < 1e-12);
         assert_eq!((luminance(0), luminance(0x8000)), (0.0, -0.0));
         // Equal energy: u' = 0.2105, v' = 0.4737.
-        let [r, g, b] = colour(64 * 256 << 16 | 86 << 8 | 194, &to_rec709());
+        let [r, g, b] = colour((64 * 256) << 16 | 86 << 8 | 194, &to_rec709());
         assert!([r, g, b].iter().all(|c| (c - 1.0).abs() < 0.02), "{r} {g} {b}");
     }
 

@@ -186,3 +186,12 @@ fn codes_of_associated_alpha_come_back() {
     let back = folder.round_trip("b.tif", &photo);
     assert_eq!((back.source.alpha, &back.pixels), (Alpha::Premultiplied, &photo.pixels));
 }
+
+#[test]
+fn half_floats_are_written_as_floats() {
+    let folder = Folder::new();
+    let half = photo::read(&folder.put("a.tif", include_bytes!("../../inputs/tiff-half.tif"))).unwrap();
+    let back = folder.round_trip("b.tif", &half);
+    assert_eq!((half.source.depth, back.source.depth), (Depth::Half, Depth::Float));
+    assert_eq!(back.pixels, half.pixels);
+}
