@@ -34,6 +34,8 @@ pub(super) trait Code: bytemuck::Pod + Send + Sync {
     const DITHER: f32;
     /// The code of a number in 0..=MAX.
     fn new(value: f32) -> Self;
+    /// The code as a number.
+    fn number(self) -> f32;
 }
 
 impl Code for u8 {
@@ -44,6 +46,10 @@ impl Code for u8 {
     fn new(value: f32) -> Self {
         value as Self
     }
+
+    fn number(self) -> f32 {
+        self.into()
+    }
 }
 
 impl Code for u16 {
@@ -52,6 +58,10 @@ impl Code for u16 {
 
     fn new(value: f32) -> Self {
         value as Self
+    }
+
+    fn number(self) -> f32 {
+        self.into()
     }
 }
 
@@ -69,20 +79,26 @@ pub(super) fn encode<T: Code>(photo: &Photo, look: Look, alpha: bool) -> Result<
     let mut data = zeroed::<T>(width * photo.height() as usize * channels)?;
     let gamut = photo.to_rec709().map_or(Mat3A::IDENTITY, |m| Mat3A::from(m.as_mat3()));
     let same_gamut = photo.to_rec709().is_none();
+    // Integers of associated alpha are codes of the colour itself, times alpha: see `tiff::light`.
+    let associated = alpha && photo.source.alpha == Alpha::Premultiplied;
     data.par_chunks_exact_mut(width * channels).enumerate().for_each(|(y, row)| {
         let pixels = photo.picture_row(y as u32);
         for (x, (out, &[r, g, b, a])) in row.chunks_exact_mut(channels).zip(pixels.iter()).enumerate() {
             let light = if same_gamut { [r, g, b] } else { (gamut * Vec3A::new(r, g, b)).to_array() };
+            let covered = T::new((a.max(0.0) * T::MAX).round().min(T::MAX));
+            let cover = if associated { a.clamp(0.0, 1.0) } else { 1.0 };
+            let light = light.map(|c| if cover > 0.0 { c / cover } else { 0.0 });
+            let top = if associated { covered.number() } else { T::MAX };
             let shown = look.tone_map.apply(light.map(|c| c * look.gain));
             // The same noise for all three colours: grey stays grey.
             let noise = T::DITHER * (2.0 * gradient_noise(x as f32, y as f32) - 1.0);
-            let code = |c: f32| T::new((srgb_encode(c) * T::MAX + noise).round().clamp(0.0, T::MAX));
+            let code = |c: f32| T::new((srgb_encode(c) * top + noise).round().clamp(0.0, top));
             out[0] = code(shown[0]);
             if !grey {
                 (out[1], out[2]) = (code(shown[1]), code(shown[2]));
             }
             if alpha {
-                out[channels - 1] = T::new((a.max(0.0) * T::MAX).round().min(T::MAX));
+                out[channels - 1] = covered;
             }
         }
     });
@@ -115,6 +131,27 @@ mod tests {
         for (&c, got) in codes.iter().zip(got.data.chunks_exact(3)) {
             assert_eq!(got, [c as u8, 255 - c as u8, c as u8 / 2]);
         }
+    }
+
+    #[test]
+    fn codes_of_associated_alpha_survive() {
+        let (mut want, mut pixels) = (Vec::new(), Vec::new());
+        for alpha in 0..256_usize {
+            for code in (0..=alpha).step_by(5) {
+                // The colour is the code's share of alpha.
+                let colour = |code: usize| if alpha == 0 { 0.0 } else { Curve::Srgb.light(code as f64 / alpha as f64) };
+                let light = [code, alpha - code, code / 2].map(|code| (colour(code) * alpha as f64 / 255.0) as f32);
+                want.push([code, alpha - code, code / 2, alpha].map(|code| code as u8));
+                pixels.push([light[0], light[1], light[2], alpha as f32 / 255.0]);
+            }
+        }
+        // Glare upon what covers nothing is not seen, and nowhere more than is covered.
+        want.extend([[0, 0, 0, 0], [128, 128, 128, 128]]);
+        pixels.extend([[0.7, 0.7, 0.7, 0.0], [9.0, 9.0, 9.0, 128.0 / 255.0]]);
+        let mut photo = Photo::new(pixels.len() as u32, 1, pixels);
+        photo.source.alpha = Alpha::Premultiplied;
+        let got = encode::<u8>(&photo, PLAIN, true).unwrap();
+        assert!(got.data.chunks_exact(4).eq(want), "a code changed");
     }
 
     #[test]

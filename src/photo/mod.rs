@@ -14,7 +14,8 @@
 //! Alpha is carried as it is and written back bit for bit at the same depth. OpenEXR's is premultiplied; PNG's and
 //! TIFF's (unless it says otherwise) straight. Straight colours are premultiplied when they go into an OpenEXR file;
 //! premultiplied colours are never divided: PNG, which knows straight alpha only, gets them as they stand, opaque.
-//! JPEG, HDR and PFM hold no alpha.
+//! JPEG, HDR and PFM hold no alpha. Integer TIFF of associated alpha holds codes of the colour itself times alpha: they
+//! are divided by it, decoded, and multiplied again.
 //!
 //! # Negative, infinite and undefined pixels
 //!

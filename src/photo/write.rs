@@ -149,7 +149,8 @@ fn depth(format: Format, photo: &Photo, asked: Option<Depth>) -> Result<Depth, R
             let names: Vec<_> = depths.iter().map(|d| d.name()).collect();
             Err(format!("{} holds {}, not {}", format.name(), names.join(", "), depth.name()).into())
         }
-        None if same_format => Ok(source.depth),
+        // OpenEXR keeps integers, which it cannot be asked for; TIFF does not write the half floats that it reads.
+        None if same_format && (depths.contains(&source.depth) || source.depth == Depth::Uint) => Ok(source.depth),
         None if format == Format::Png && source.depth == Depth::Sixteen => Ok(Depth::Sixteen),
         None => Ok(*depths.last().expect("a format has a depth")),
     }

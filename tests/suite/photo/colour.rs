@@ -141,7 +141,10 @@ fn primaries_that_are_asked_for_go_before_the_files() {
 fn embedded(path: &Path) -> Option<ColorProfile> {
     let file = BufReader::new(File::open(path).unwrap());
     let icc = match path.extension().unwrap().to_str().unwrap() {
-        "tif" => image::codecs::tiff::TiffDecoder::new(file).unwrap().icc_profile().unwrap(),
+        "tif" => {
+            let tag = tiff::decoder::Decoder::new(file).unwrap().find_tag(tiff::tags::Tag::IccProfile).unwrap();
+            tag.map(|value| value.into_u8_vec().unwrap())
+        }
         _ => image::codecs::jpeg::JpegDecoder::new(file).unwrap().icc_profile().unwrap(),
     };
     icc.map(|icc| ColorProfile::new_from_slice(&icc).unwrap())
