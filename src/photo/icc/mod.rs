@@ -27,7 +27,7 @@ pub(super) struct Profile {
 
 pub(super) enum Way {
     /// Three curves and a matrix; for grey, the same curve three times.
-    Shaper(Shaper),
+    Shaper(Box<Shaper>),
     /// Tables: 0..=1 in.
     Tables(Tables),
 }
@@ -50,7 +50,7 @@ pub(super) fn encoding(
     };
     match (Profile::new(icc, grey), options.primaries) {
         (Ok(Some(Profile { way: Way::Shaper(shaper), .. })), Some(primaries)) => {
-            return Encoding::Curves(Shaper::new(shaper.curves, Some(primaries)));
+            return Encoding::Curves(Box::new(Shaper::new(shaper.curves, Some(primaries))));
         }
         (Ok(Some(profile)), None) => return Encoding::Icc(profile),
         (Ok(Some(_)), Some(_)) => {
@@ -83,7 +83,7 @@ impl Profile {
         let profile = head::parse(icc)?;
         let way = match tables::of(&profile) {
             Some(tables) => Way::Tables(tables?),
-            None => Way::Shaper(shape::shaper(&profile, name.as_deref())?),
+            None => Way::Shaper(Box::new(shape::shaper(&profile, name.as_deref())?)),
         };
         Ok(Some(Self { way, name }))
     }
