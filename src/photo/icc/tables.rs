@@ -31,6 +31,10 @@ impl Tables {
             &mut profile.lut_a_to_b_saturation,
         ];
         tables.into_iter().flatten().try_for_each(straighten)?;
+        // moxcms looks for the table of its intent alone; [ICC] 8.10.2 has the perceptual one serve for all.
+        let colorimetric = profile.lut_a_to_b_colorimetric.take();
+        let (perceptual, saturation) = (&profile.lut_a_to_b_perceptual, &profile.lut_a_to_b_saturation);
+        profile.lut_a_to_b_colorimetric = colorimetric.or_else(|| perceptual.clone()).or_else(|| saturation.clone());
         // Relative colorimetric: white to white, and every colour that the target has stays as it is.
         let options = TransformOptions {
             rendering_intent: RenderingIntent::RelativeColorimetric,
