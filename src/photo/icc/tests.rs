@@ -175,10 +175,12 @@ fn of_tables(tag: &[u8; 4]) -> Vec<u8> {
 fn profiles_of_tables_alone_are_honoured() {
     for tag in [b"A2B0", b"A2B1", b"A2B2"] {
         let profile = Profile::new(&of_tables(tag), false).unwrap().unwrap();
-        let light = profile.to_light(&[[0.0; 3], [1.0; 3], [0.0, 128.0 / 255.0, 1.0]]).unwrap();
+        let colours = [[0.0; 3], [1.0; 3], [0.0, 128.0 / 255.0, 1.0], [1.0, 0.0, 0.0]];
+        let light = profile.to_light(&colours).unwrap();
         assert_eq!(light[0], [0.0; 3]);
         close(light[1], [1.0; 3], 1e-3);
         // In f64: gamma 461/256, ROMM's primaries, Bradford.
         close(light[2], [-0.517_055, 0.353_111, 1.117_525], 1.5e-3);
+        close(light[3], [2.034_37, -0.228_83, -0.008_56], 1.5e-3);
     }
 }

@@ -37,9 +37,9 @@ pub(super) fn read(mut reader: impl BufRead + Seek, options: &ReadOptions) -> Re
     let (colour, depth) = reader.output_color_type();
     let (mut notes, channels) = (Vec::new(), colour.samples());
     let info = reader.info();
-    // The decoder indexes beyond a palette of less than one colour.
-    if info.color_type == ColorType::Indexed && info.palette.as_ref().is_none_or(|palette| palette.len() < 3) {
-        return Err("it has no palette".into());
+    // The decoder indexes beyond a palette whose last colour is cut.
+    if info.palette.as_ref().is_some_and(|palette| !palette.len().is_multiple_of(3)) {
+        return Err("its palette is damaged".into());
     }
     if chunks.profile > 0 && info.icc_profile.is_none() {
         notes.push("its ICC profile is damaged or too large; its colours are taken as sRGB".into());

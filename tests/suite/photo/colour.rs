@@ -91,14 +91,14 @@ fn a_png_that_claims_gigabytes_is_refused() {
 }
 
 #[test]
-fn a_palette_of_no_colour_is_refused() {
+fn a_palette_whose_last_colour_is_cut_is_refused() {
     let folder = Folder::new();
     let path = folder.path("a.png");
     let mut encoder = png::Encoder::new(File::create(&path).unwrap(), 1, 1);
     encoder.set_color(png::ColorType::Indexed);
-    encoder.set_palette(vec![255]);
+    encoder.set_palette(vec![255; 7]);
     encoder.write_header().unwrap().write_image_data(&[0]).unwrap();
-    assert!(reason(&path).contains("no palette"));
+    assert!(reason(&path).contains("palette is damaged"));
 }
 
 #[test]
