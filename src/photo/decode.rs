@@ -12,7 +12,7 @@ use crate::frame::Frame;
 /// What the file says its numbers mean.
 pub(super) enum Encoding {
     /// Three curves, then a matrix.
-    Curves(Shaper),
+    Curves(Box<Shaper>),
     /// An ICC profile.
     Icc(Profile),
 }
@@ -42,7 +42,7 @@ impl Shaper {
 impl Encoding {
     /// A curve, and primaries if the file names any.
     pub fn new(curve: Curve, primaries: Option<Primaries>) -> Self {
-        Self::Curves(Shaper::new([curve.clone(), curve.clone(), curve], primaries))
+        Self::Curves(Box::new(Shaper::new([curve.clone(), curve.clone(), curve], primaries)))
     }
 
     /// The colour space that the samples are in, where its primaries are not Rec.709's.

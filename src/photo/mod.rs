@@ -8,6 +8,8 @@
 //! OpenEXR, Radiance HDR, PFM and float TIFF hold *scene-linear* light; their values are taken over untouched. Integer
 //! TIFF, PNG and JPEG are *display-referred*: an embedded ICC profile (PNG also: cICP, gAMA, cHRM) decodes them, and
 //! where there is none the sRGB curve. Their pixels come out in linear light of Rec.709 primaries, 1 is display white.
+//! What a file says wrongly or in an unknown way becomes one of [`Source::notes`], and what an output cannot hold of a
+//! photo's colours is told by [`lost()`]. Pictures for displays are written as sRGB, and say so.
 //!
 //! # Alpha
 //!

@@ -29,7 +29,7 @@ pub(super) fn read(mut reader: impl BufRead) -> Result<Photo, Reason> {
     }
     let count = check_size(width, height)?;
     let mut pixels = zeroed::<[f32; 4]>(count)?;
-    let mut line = vec![[0_u8; 4]; width as usize * channels];
+    let mut line = zeroed::<[u8; 4]>(width as usize * channels)?;
     let read = if scale < 0.0 { f32::from_le_bytes } else { f32::from_be_bytes };
     for row in pixels.chunks_exact_mut(width as usize).rev() {
         reader.read_exact(line.as_flattened_mut())?;

@@ -123,5 +123,7 @@ fn write(photo: &Photo, look: &Look, subject: Subject, path: &Path, watch: &Prog
         None => job.photo,
     };
     photo::write_unless(path, &picture, &options, || watch.cancelled())?;
-    Ok(job.warnings)
+    let mut warnings = job.warnings;
+    warnings.extend(photo::lost(path, &picture, &options));
+    Ok(warnings)
 }

@@ -27,7 +27,7 @@ pub(super) struct Profile {
 
 pub(super) enum Way {
     /// Three curves and a matrix; for grey, the same curve three times.
-    Shaper(Shaper),
+    Shaper(Box<Shaper>),
     /// Tables: 0..=1 in.
     Tables(Tables),
 }
@@ -48,9 +48,9 @@ pub(super) fn encoding(
         (Curve::Linear, _) => "its numbers are taken as linear light of Rec. 709",
         _ => "its colours are taken as sRGB",
     };
-    match (Profile::new(icc, grey), options.primaries) {
+    match (Profile::parse(icc, grey), options.primaries) {
         (Ok(Some(Profile { way: Way::Shaper(shaper), .. })), Some(primaries)) => {
-            return Encoding::Curves(Shaper::new(shaper.curves, Some(primaries)));
+            return Encoding::Curves(Box::new(Shaper::new(shaper.curves, Some(primaries))));
         }
         (Ok(Some(profile)), None) => return Encoding::Icc(profile),
         (Ok(Some(_)), Some(_)) => {
@@ -73,8 +73,13 @@ impl Profile {
     /// The way of an embedded profile; none if it is for other than RGB or grey samples (a decoder has converted them).
     ///
     /// # Errors
-    /// Where the profile is damaged or of a kind that moxcms cannot read; the reason goes on after "its ICC profile".
+    /// Where the profile is damaged or of a kind that moxcms cannot read.
     pub fn new(icc: &[u8], grey_samples: bool) -> Result<Option<Self>, Reason> {
+        Self::parse(icc, grey_samples).map_err(|reason| format!("its ICC profile {reason}").into())
+    }
+
+    /// The same; the reason goes on after "its ICC profile".
+    fn parse(icc: &[u8], grey_samples: bool) -> Result<Option<Self>, Reason> {
         let space = head::check(icc)?;
         if space != *b"RGB " && !(space == *b"GRAY" && grey_samples) {
             return Ok(None);
@@ -83,7 +88,7 @@ impl Profile {
         let profile = head::parse(icc)?;
         let way = match tables::of(&profile) {
             Some(tables) => Way::Tables(tables?),
-            None => Way::Shaper(shape::shaper(&profile, name.as_deref())?),
+            None => Way::Shaper(Box::new(shape::shaper(&profile, name.as_deref())?)),
         };
         Ok(Some(Self { way, name }))
     }

@@ -32,7 +32,7 @@ pub fn shaper(profile: &ColorProfile, name: Option<&str>) -> Result<Shaper, Reas
         return Err("lacks a primary".into());
     }
     let matrix = DMat3::from_cols(colorants[0], colorants[1], colorants[2]);
-    if !(matrix.determinant().abs() > 1e-6) {
+    if !matrix.is_finite() || matrix.determinant().abs() < 1e-6 {
         return Err("has primaries that span no colour space".into());
     }
     Ok(to_rec709(curves, Primaries::pcs_to_rec709() * matrix, name))

@@ -2,13 +2,17 @@
 
 use std::sync::Arc;
 
+use glam::{DMat3, DVec3, Mat3A, Vec3A};
 use moxcms::{
     ColorProfile, DataColorSpace, Layout, LutWarehouse, RenderingIntent, ToneReprCurve, TransformExecutor,
-    TransformOptions,
+    TransformOptions, Xyzd,
 };
 
-use super::super::Reason;
+use super::super::{Primaries, Reason};
 use super::shape;
+
+/// [ICC] 7.2.16: the white of the PCS.
+const D50: DVec3 = DVec3::new(0.9642, 1.0, 0.8249);
 
 /// The way through a profile's tables.
 pub struct Tables {
@@ -31,16 +35,19 @@ impl Tables {
             &mut profile.lut_a_to_b_saturation,
         ];
         tables.into_iter().flatten().try_for_each(straighten)?;
+        // moxcms looks for the table of its intent alone; [ICC] 8.10.2 has the perceptual one serve for all.
+        let colorimetric = profile.lut_a_to_b_colorimetric.take();
+        let (perceptual, saturation) = (&profile.lut_a_to_b_perceptual, &profile.lut_a_to_b_saturation);
+        profile.lut_a_to_b_colorimetric = colorimetric.or_else(|| perceptual.clone()).or_else(|| saturation.clone());
         // Relative colorimetric: white to white, and every colour that the target has stays as it is.
         let options = TransformOptions {
             rendering_intent: RenderingIntent::RelativeColorimetric,
-            // Without this, colours outside Rec.709 are clipped.
             allow_extended_range_rgb_xyz: true,
             ..TransformOptions::default()
         };
         let grey = profile.color_space == DataColorSpace::Gray;
         let layout = if grey { Layout::Gray } else { Layout::Rgb };
-        match profile.create_transform_f32(layout, &linear_rec709(), Layout::Rgb, options) {
+        match profile.create_transform_f32(layout, &pcs(), Layout::Rgb, options) {
             Ok(way) => Ok(Self { way, grey }),
             Err(error) => Err(format!("cannot be read: {error}").into()),
         }
@@ -55,15 +62,22 @@ impl Tables {
         } else {
             self.way.transform(colours.as_flattened(), light.as_flattened_mut())?;
         }
+        // White becomes white, whatever the rounding.
+        let white = (Primaries::pcs_to_rec709() * D50).recip();
+        let matrix = Mat3A::from((DMat3::from_diagonal(white) * Primaries::pcs_to_rec709()).as_mat3());
+        light.iter_mut().for_each(|xyz| *xyz = (matrix * Vec3A::from(*xyz)).to_array());
         Ok(light)
     }
 }
 
-/// Rec.709 primaries without a curve.
-fn linear_rec709() -> ColorProfile {
+/// The PCS itself as a colour space, in which all that tables can hold lies within 0..=1, where moxcms clips.
+fn pcs() -> ColorProfile {
     let straight = Some(ToneReprCurve::Lut(Vec::new()));
     let mut profile = ColorProfile::new_srgb();
     (profile.red_trc, profile.green_trc, profile.blue_trc) = (straight.clone(), straight.clone(), straight);
+    profile.red_colorant = Xyzd { x: 1.0, y: 0.0, z: 0.0 };
+    profile.green_colorant = Xyzd { x: 0.0, y: 1.0, z: 0.0 };
+    profile.blue_colorant = Xyzd { x: 0.0, y: 0.0, z: 1.0 };
     profile.cicp = None;
     profile
 }

@@ -45,6 +45,7 @@ fn srgb_is_srgb_to_the_bit() {
         let written = Profile::new(srgb_profile(grey).unwrap(), grey).unwrap().unwrap();
         assert_eq!(written.to_light(&[[0.5; 3]]).unwrap(), [[Curve::Srgb.light(0.5) as f32; 3]]);
         assert_eq!(written.space(), None);
+        assert_eq!(srgb_profile(grey).unwrap()[24..36], [7, 234, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0], "no clock");
     }
 }
 
@@ -151,5 +152,35 @@ fn colours_that_two_spaces_share_are_not_negative() {
     let adobe = with_curve(ColorProfile::new_adobe_rgb(), ToneReprCurve::Lut(vec![563]));
     for colour in [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.004], [0.7, 0.0, 0.2]] {
         assert!(light_of(&adobe, colour).iter().all(|&c| c >= 0.0), "{colour:?}");
+    }
+}
+
+/// [ICC] 10.12: curves, a matrix and straight curves as a table from device to PCS XYZ, under the name `tag`.
+fn of_tables(tag: &[u8; 4]) -> Vec<u8> {
+    let fixed = |x: f64| ((x * 65536.0).round() as i32).to_be_bytes();
+    let gamma = [b"curv\0\0\0\0\0\0\0\x01".as_slice(), &461_u16.to_be_bytes(), &[0, 0]].concat();
+    // ROMM's colorants, in PCS XYZ of which 1 is 32768/65535.
+    let matrix = [0.7977, 0.1352, 0.0313, 0.2880, 0.7119, 0.0001, 0.0, 0.0, 0.8249, 0.0, 0.0, 0.0];
+    let matrix = matrix.map(|m| fixed(m * 32768.0 / 65535.0)).concat();
+    let starts = [32_u32, 68, 116, 0, 0].map(u32::to_be_bytes).concat();
+    let straight = b"curv\0\0\0\0\0\0\0\0".repeat(3);
+    let table = [b"mAB \0\0\0\0\x03\x03\0\0".to_vec(), starts, straight, matrix, gamma.repeat(3)].concat();
+    let mut header = ColorProfile::new_srgb().encode().unwrap()[..128].to_vec();
+    let entry = [tag.as_slice(), &144_u32.to_be_bytes(), &(table.len() as u32).to_be_bytes()].concat();
+    header.extend([1_u32.to_be_bytes().to_vec(), entry, table].concat());
+    header
+}
+
+#[test]
+fn profiles_of_tables_alone_are_honoured() {
+    for tag in [b"A2B0", b"A2B1", b"A2B2"] {
+        let profile = Profile::new(&of_tables(tag), false).unwrap().unwrap();
+        let colours = [[0.0; 3], [1.0; 3], [0.0, 128.0 / 255.0, 1.0], [1.0, 0.0, 0.0]];
+        let light = profile.to_light(&colours).unwrap();
+        assert_eq!(light[0], [0.0; 3]);
+        close(light[1], [1.0; 3], 1e-3);
+        // In f64: gamma 461/256, ROMM's primaries, Bradford.
+        close(light[2], [-0.517_055, 0.353_111, 1.117_525], 1.5e-3);
+        close(light[3], [2.034_37, -0.228_83, -0.008_56], 1.5e-3);
     }
 }

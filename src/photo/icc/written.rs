@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use moxcms::{ColorDateTime, ColorProfile, LocalizableString, ProfileText};
+use moxcms::{ColorProfile, LocalizableString, ProfileText};
 
 use super::super::Reason;
 
@@ -27,9 +27,9 @@ fn encoded(mut profile: ColorProfile, name: &str) -> Option<Vec<u8>> {
         |value: &str| ProfileText::Localizable(vec![LocalizableString::new("en".into(), "GB".into(), value.into())]);
     profile.description = Some(text(name));
     profile.copyright = Some(text("No copyright, use freely"));
-    // The same picture is the same file, whenever it is written.
-    profile.creation_date_time =
-        ColorDateTime { year: 2026, month: 1, day_of_the_month: 1, hours: 0, minutes: 0, seconds: 0 };
     profile.cicp = None;
-    profile.encode().ok()
+    let mut profile = profile.encode().ok()?;
+    // The same picture is the same file, whenever it is written: [ICC] 4.2, a date of 12 bytes.
+    profile[24..36].copy_from_slice(&[7, 234, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0]);
+    Some(profile)
 }

@@ -1,7 +1,8 @@
 //! PNG through the `png` crate, 8 and 16 bit.
 //!
 //! What the samples mean, in the order of the PNG specification (third edition, 4.3): cICP, then an ICC profile, then
-//! sRGB, then gAMA and cHRM; without any of them sRGB. A gAMA of 1/2.2 means the sRGB curve, as everywhere.
+//! sRGB, then gAMA and cHRM; without any of them sRGB. A gAMA of 1/2.2 means the sRGB curve, as everywhere. Of an
+//! animation the still picture is read.
 
 mod chunks;
 
@@ -36,6 +37,10 @@ pub(super) fn read(mut reader: impl BufRead + Seek, options: &ReadOptions) -> Re
     let (colour, depth) = reader.output_color_type();
     let (mut notes, channels) = (Vec::new(), colour.samples());
     let info = reader.info();
+    // The decoder indexes beyond a palette whose last colour is cut.
+    if info.palette.as_ref().is_some_and(|palette| !palette.len().is_multiple_of(3)) {
+        return Err("its palette is damaged".into());
+    }
     if chunks.profile > 0 && info.icc_profile.is_none() {
         notes.push("its ICC profile is damaged or too large; its colours are taken as sRGB".into());
     }
@@ -112,7 +117,7 @@ fn code_points(code: CodingIndependentCodePoints, notes: &mut Vec<String>) -> Op
 }
 
 pub(super) fn write<T: Code>(writer: impl Write, photo: &Photo, look: Look) -> Result<(), Reason> {
-    let Samples { channels, data } = display::encode::<T>(photo, look, display::has_straight_alpha(photo))?;
+    let Samples { channels, mut data } = display::encode::<T>(photo, look, display::has_straight_alpha(photo))?;
     let colours = [ColorType::Grayscale, ColorType::GrayscaleAlpha, ColorType::Rgb, ColorType::Rgba];
     let mut encoder = png::Encoder::new(writer, photo.width(), photo.height());
     encoder.set_color(colours[channels - 1]);
@@ -122,12 +127,9 @@ pub(super) fn write<T: Code>(writer: impl Write, photo: &Photo, look: Look) -> R
     encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
     let mut writer = encoder.write_header()?;
     if size_of::<T>() == 2 {
-        let codes: Vec<u16> = bytemuck::allocation::cast_vec(data);
-        let bytes: Vec<[u8; 2]> = codes.into_iter().map(u16::to_be_bytes).collect();
-        writer.write_image_data(bytes.as_flattened())?;
-    } else {
-        writer.write_image_data(bytemuck::cast_slice(&data))?;
+        bytemuck::cast_slice_mut::<_, u16>(&mut data).iter_mut().for_each(|code| *code = code.to_be());
     }
+    writer.write_image_data(bytemuck::cast_slice(&data))?;
     Ok(writer.finish()?)
 }
 

@@ -172,3 +172,15 @@ fn info_tells_of_both_backends() {
         assert!(backend["info"]["limits"]["texture_size"].as_u64() >= Some(16384), "{text}");
     }
 }
+
+#[test]
+fn colours_that_become_srgb_are_told() {
+    let place = Workplace::new();
+    let input = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/inputs/png-icc-gamma18.png");
+    let ran = place.vglare(&["apply", input, "-o", "out.png", "--strength", "0", "--report", "r.json"]).succeeded();
+    assert!(ran.stderr().contains("ProPhoto RGB, are written as sRGB"), "{}", ran.stderr());
+    let report: Value = serde_json::from_slice(&std::fs::read(place.path("r.json")).unwrap()).unwrap();
+    assert!(report["warnings"][0].as_str().unwrap().contains("ProPhoto RGB"), "{}", report["warnings"]);
+    let ran = place.vglare(&["apply", input, "-o", "out.exr", "--strength", "0"]).succeeded();
+    assert!(!ran.stderr().contains("written as"), "{}", ran.stderr());
+}

@@ -9,6 +9,7 @@ use image::ImageDecoder;
 use moxcms::{ColorProfile, DataColorSpace};
 use vglare::photo::{self, Depth, Photo, Primaries, ReadOptions, WriteOptions};
 
+use super::damaged::crc32;
 use super::{Folder, asymmetric, reason, with_depth};
 
 fn input(name: &str) -> PathBuf {
@@ -24,13 +25,14 @@ fn put_png(path: &Path, pixels: &[u8], info: impl FnOnce(&mut png::Info<'static>
     encoder.write_header().unwrap().write_image_data(pixels).unwrap();
 }
 
-fn code_points(color_primaries: u8, transfer_function: u8) -> png::CodingIndependentCodePoints {
-    png::CodingIndependentCodePoints {
-        color_primaries,
-        transfer_function,
-        matrix_coefficients: 0,
-        is_video_full_range_image: true,
-    }
+/// A PNG with a cICP chunk, which the encoder does not write.
+fn put_code_points(path: &Path, pixels: &[u8], primaries: u8, transfer: u8) {
+    put_png(path, pixels, |_| {});
+    let mut bytes = std::fs::read(path).unwrap();
+    let chunk = [b'c', b'I', b'C', b'P', primaries, transfer, 0, 1];
+    // It stands behind the header.
+    bytes.splice(33..33, [&4_u32.to_be_bytes()[..], &chunk, &crc32(&chunk).to_be_bytes()].concat());
+    std::fs::write(path, bytes).unwrap();
 }
 
 fn near(got: [f32; 4], want: [f32; 3], tolerance: f32) {
@@ -89,13 +91,22 @@ fn a_png_that_claims_gigabytes_is_refused() {
 }
 
 #[test]
+fn a_palette_whose_last_colour_is_cut_is_refused() {
+    let folder = Folder::new();
+    let path = folder.path("a.png");
+    let mut encoder = png::Encoder::new(File::create(&path).unwrap(), 1, 1);
+    encoder.set_color(png::ColorType::Indexed);
+    encoder.set_palette(vec![255; 7]);
+    encoder.write_header().unwrap().write_image_data(&[0]).unwrap();
+    assert!(reason(&path).contains("palette is damaged"));
+}
+
+#[test]
 fn code_points_of_png_are_honoured_or_told() {
     let folder = Folder::new();
     let read = |primaries, transfer| {
         let path = folder.path("a.png");
-        put_png(&path, &[255, 0, 0], |info| {
-            info.coding_independent_code_points = Some(code_points(primaries, transfer));
-        });
+        put_code_points(&path, &[255, 0, 0], primaries, transfer);
         photo::read(&path).unwrap()
     };
     // Full red of Display P3 in Rec. 709, as published.
@@ -127,9 +138,7 @@ fn an_animation_gives_its_still_picture() {
 fn primaries_that_are_asked_for_go_before_the_files() {
     let folder = Folder::new();
     let path = folder.path("a.png");
-    put_png(&path, &[255, 0, 0, 128, 128, 128], |info| {
-        info.coding_independent_code_points = Some(code_points(9, 8));
-    });
+    put_code_points(&path, &[255, 0, 0, 128, 128, 128], 9, 8);
     let options = ReadOptions { primaries: Some(Primaries::P3_D65), ..Default::default() };
     let photo = photo::read_with(&path, &options).unwrap();
     near(photo.pixels[0], [1.2249, -0.0420, -0.0197], 1e-3);
@@ -179,7 +188,7 @@ fn pictures_for_displays_say_that_they_are_srgb() {
 fn colours_that_an_output_cannot_hold_are_told() {
     let folder = Folder::new();
     let path = folder.path("p3.png");
-    put_png(&path, &[255, 0, 0], |info| info.coding_independent_code_points = Some(code_points(12, 13)));
+    put_code_points(&path, &[255, 0, 0], 12, 13);
     let p3 = photo::read(&path).unwrap();
     let mut acescg = asymmetric(2, 2);
     acescg.source.primaries = Some(Primaries::ACESCG);

@@ -103,7 +103,7 @@ fn absurd_sizes_are_refused_before_memory_is_taken() {
     reason(&folder.put("a.jpg", &jpeg(0, 0)));
 }
 
-fn crc32(bytes: &[u8]) -> u32 {
+pub(super) fn crc32(bytes: &[u8]) -> u32 {
     let mut crc = u32::MAX;
     for &byte in bytes {
         crc ^= u32::from(byte);
