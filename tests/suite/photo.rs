@@ -3,6 +3,7 @@
 mod damaged;
 mod display;
 mod exr;
+mod jpeg;
 mod target;
 mod tiff;
 

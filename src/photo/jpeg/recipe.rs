@@ -133,7 +133,7 @@ fn words<'a>(document: &'a Document, name: &str) -> Option<Vec<&'a str>> {
         }
         let here = node.is_element() && node.has_tag_name((HDRGM, name));
         let text = |node: roxmltree::Node<'a, '_>| node.text().map(str::trim).filter(|text| !text.is_empty());
-        let listed = || node.descendants().filter_map(text).collect::<Vec<_>>();
+        let listed = || node.descendants().filter(|node| node.is_text()).filter_map(text).collect::<Vec<_>>();
         here.then(listed).filter(|words| !words.is_empty())
     })
 }
