@@ -8,6 +8,7 @@
 //! OpenEXR, Radiance HDR, PFM and float TIFF hold *scene-linear* light; their values are taken over untouched. Integer
 //! TIFF, PNG and JPEG are *display-referred*: an embedded ICC profile (PNG also: cICP, gAMA, cHRM) decodes them, and
 //! where there is none the sRGB curve. Their pixels come out in linear light of Rec.709 primaries, 1 is display white.
+//! A JPEG with a gain map (Ultra HDR) is brightened by it, and counts as scene-linear light of Rec.709 primaries.
 //!
 //! # Alpha
 //!

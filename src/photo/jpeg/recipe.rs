@@ -76,7 +76,9 @@ impl Recipe {
             let (above, below) = (word()? as i32, common.map_or_else(&mut word, Ok)?);
             Ok((f64::from(above) / f64::from(below)) as f32)
         };
-        (number()?, number()?);
+        // The headrooms say for which displays the map is meant in part; here it is applied in full.
+        number()?;
+        number()?;
         let mut channels = [[0.0; 5]; 3];
         let count = if flags & THREE_CHANNELS == 0 { 1 } else { 3 };
         for channel in channels.iter_mut().take(count) {

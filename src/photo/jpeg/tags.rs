@@ -4,7 +4,9 @@
 //! [EXIF] CIPA DC-008, 4.6.5: ColorSpace. [XMP] XMP specification part 3, 1.1.3.
 
 use exif::{Context, Exif, In, Reader, Tag, Value};
+use glam::{DMat3, DVec3};
 use image::metadata::Orientation;
+use moxcms::ColorProfile;
 
 use super::super::decode::Encoding;
 use super::super::icc::Profile;
@@ -77,8 +79,22 @@ fn space(exif: &Exif) -> Space {
     }
 }
 
-/// What the samples mean: by the ICC profile if there is one, else by Exif; `options` may name the primaries.
-pub(super) fn encoding(walk: &Walk, shown: &Shown, options: &ReadOptions, notes: &mut Vec<String>) -> Encoding {
+/// What the samples mean.
+pub(super) struct Colours {
+    pub encoding: Encoding,
+    /// From the light of the file's own primaries to Rec. 709, where these are known and others.
+    pub to_rec709: Option<DMat3>,
+}
+
+impl Colours {
+    fn new(curve: Curve, primaries: Option<Primaries>) -> Self {
+        let to_rec709 = primaries.and_then(Primaries::other_than_rec709).map(Primaries::to_rec709);
+        Self { encoding: Encoding::new(curve, primaries), to_rec709 }
+    }
+}
+
+/// By the ICC profile if there is one, else by Exif; `options` may name the primaries.
+pub(super) fn colours(walk: &Walk, shown: &Shown, options: &ReadOptions, notes: &mut Vec<String>) -> Colours {
     let profile = icc(walk).unwrap_or_else(|missing| {
         notes.push(format!("its ICC profile is in pieces, of which some are missing ({missing}); it is left out"));
         None
@@ -91,14 +107,14 @@ pub(super) fn encoding(walk: &Walk, shown: &Shown, options: &ReadOptions, notes:
         if profile.is_some() {
             notes.push("its ICC profile is left out, since primaries were named: its curve is taken as sRGB's".into());
         }
-        return Encoding::new(curve, Some(primaries));
+        return Colours::new(curve, Some(primaries));
     }
     if walk.frame.components.len() == 4 {
-        return Encoding::new(Curve::Srgb, None);
+        return Colours::new(Curve::Srgb, None);
     }
     if let Some(icc) = profile {
         match Profile::new(&icc, walk.frame.components.len() == 1) {
-            Ok(Some(profile)) => return Encoding::Icc(profile),
+            Ok(Some(profile)) => return Colours { encoding: Encoding::Icc(profile), to_rec709: matrix(&icc) },
             Ok(None) => notes.push("its ICC profile is for other colours than it has, and is left out".into()),
             Err(error) => notes.push(format!("{error}; it is left out")),
         }
@@ -106,7 +122,14 @@ pub(super) fn encoding(walk: &Walk, shown: &Shown, options: &ReadOptions, notes:
     if shown.space == Space::Unknown {
         notes.push("Exif calls its colours uncalibrated and names no colour space: they are taken as sRGB".into());
     }
-    Encoding::new(curve, (shown.space == Space::AdobeRgb).then_some(Primaries::ADOBE_RGB))
+    Colours::new(curve, (shown.space == Space::AdobeRgb).then_some(Primaries::ADOBE_RGB))
+}
+
+/// The matrix of a profile that has one.
+fn matrix(icc: &[u8]) -> Option<DMat3> {
+    let profile = ColorProfile::new_from_slice(icc).ok().filter(ColorProfile::is_matrix_shaper)?;
+    let rows = profile.transform_matrix(&ColorProfile::new_srgb()).v.map(DVec3::from_array);
+    Some(DMat3::from_cols(rows[0], rows[1], rows[2]).transpose()).filter(|matrix| matrix.determinant().abs() > 1e-6)
 }
 
 /// [ICC] the profile, put together; the error says how many of its pieces are there.

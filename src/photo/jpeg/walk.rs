@@ -7,6 +7,8 @@ const EOI: u8 = 0xd9;
 const SOS: u8 = 0xda;
 const DNL: u8 = 0xdc;
 const DHP: u8 = 0xde;
+/// The frame marker of ITU-T T.87.
+const SOF55: u8 = 0xf7;
 pub(super) const DQT: u8 = 0xdb;
 pub(super) const DHT: u8 = 0xc4;
 const DAC: u8 = 0xcc;
@@ -116,6 +118,7 @@ impl<'a> Walk<'a> {
                 0xd0..=0xd7 | 0x01 => continue,
                 SOI => return Err("the file is damaged: a second picture begins within the first".into()),
                 DNL => return Err("its height stands behind its first scan (DNL), which vglare does not read".into()),
+                SOF55 => return Err("it is a JPEG-LS picture, which vglare does not read".into()),
                 DHP => return Err("it is a hierarchical JPEG, which vglare does not read".into()),
                 _ => {}
             }
