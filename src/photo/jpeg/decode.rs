@@ -190,6 +190,7 @@ where
 fn tell(warnings: &[DecodeWarning], notes: &mut Vec<String>) {
     for warning in warnings {
         let note = match warning {
+            DecodeWarning::ExtraneousData { bytes: 1 } => "a stray byte between its markers was passed over".into(),
             DecodeWarning::ExtraneousData { bytes } => {
                 format!("{bytes} stray bytes between its markers were passed over")
             }

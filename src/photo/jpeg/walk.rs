@@ -231,7 +231,8 @@ impl Frame {
             return Err(format!("it has {count} colour components; vglare reads JPEG of 1, 3 or 4").into());
         }
         if marker & 0x8 != 0 {
-            return Err("it is a JPEG of arithmetic coding, in which nothing tells whether data are missing; vglare reads Huffman coding".into());
+            // Its decoder makes something of any data, so that nothing would tell that some are missing.
+            return Err("it is a JPEG of arithmetic coding, which vglare does not read".into());
         }
         let (width, height) = (u16::from_be_bytes([*w1, *w0]).into(), u16::from_be_bytes([*h1, *h0]).into());
         if height == 0 && width > 0 {

@@ -282,6 +282,12 @@ fn xmp(attributes: &str, inside: &str) -> Vec<u8> {
     .into_bytes()
 }
 
+/// The maximum of each colour, as a list.
+fn list(stops: [&str; 3]) -> String {
+    let items = stops.map(|stops| format!("<rdf:li>{stops}</rdf:li>")).concat();
+    format!("<hdrgm:GainMapMax><rdf:Seq>{items}</rdf:Seq></hdrgm:GainMapMax>")
+}
+
 /// Light of the sRGB code 188, and the formula of Ultra HDR 1.1 with offsets of 1/64.
 fn brightened(stops: f32) -> f32 {
     let plain = ((188.0_f32 / 255.0 + 0.055) / 1.055).powf(2.4);
@@ -309,13 +315,12 @@ fn a_gain_map_is_applied_in_full() {
     check(&map(&[255], "hdrgm:GainMapMax='3'", ""), [3.0; 3]);
     check(&map(&[0], "hdrgm:GainMapMin='-1' hdrgm:GainMapMax='3'", ""), [-1.0; 3]);
     check(&map(&[128], "hdrgm:GainMapMax='2' hdrgm:Gamma='0.5'", ""), [2.0 * (128.0_f32 / 255.0).powi(2); 3]);
-    let list = "<hdrgm:GainMapMax><rdf:Seq><rdf:li>1</rdf:li><rdf:li>2</rdf:li><rdf:li>3</rdf:li></rdf:Seq></hdrgm:GainMapMax>";
-    check(&map(&[255, 255, 255], "", list), [1.0, 2.0, 3.0]);
+    check(&map(&[255, 255, 255], "", &list(["1", "2", "3"])), [1.0, 2.0, 3.0]);
     // In the picture's own primaries: grey of Display P3, red brightened; first column of its matrix to Rec. 709.
     let profile = ColorProfile::new_display_p3().encode().unwrap();
     let wide = with_segment(&plain, 0xe2, b"ICC_PROFILE\0\x01\x01", &profile);
-    let list = "<hdrgm:GainMapMax><rdf:Seq><rdf:li>2</rdf:li><rdf:li>0</rdf:li><rdf:li>0</rdf:li></rdf:Seq></hdrgm:GainMapMax>";
-    let photo = photo::read(&folder.put("a.jpg", &[wide, map(&[255, 255, 255], "", list)].concat())).unwrap();
+    let red = list(["2", "0", "0"]);
+    let photo = photo::read(&folder.put("a.jpg", &[wide, map(&[255, 255, 255], "", &red)].concat())).unwrap();
     let (grey, more) = (brightened(0.0), brightened(2.0) - brightened(0.0));
     for (got, share) in brightness(&photo).into_iter().zip([1.2249, -0.0420, -0.0197]) {
         assert!((got - grey - more * share).abs() < 0.01, "{:?}", brightness(&photo));
