@@ -45,6 +45,17 @@ impl Encoding {
         Self::Curves(Box::new(Shaper::new([curve.clone(), curve.clone(), curve], primaries)))
     }
 
+    /// The way from the light of the samples' own primaries to Rec. 709's, where it is a matrix and they are others.
+    pub fn to_rec709(&self) -> Option<DMat3> {
+        match self {
+            Self::Curves(shaper) => shaper.matrix,
+            Self::Icc(profile) => match profile.way() {
+                Way::Shaper(shaper) => shaper.matrix,
+                Way::Tables(_) => None,
+            },
+        }
+    }
+
     /// The colour space that the samples are in, where its primaries are not Rec.709's.
     fn space(&self) -> Option<&String> {
         match self {

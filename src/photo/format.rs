@@ -73,9 +73,9 @@ impl Format {
             [b'I', b'I', 42 | 43, 0, ..] | [b'M', b'M', 0, 42 | 43, ..] => Ok(Self::Tiff),
             [0x89, b'P', b'N', b'G', b'\r', b'\n', 0x1a, b'\n', ..] => Ok(Self::Png),
             [0xff, 0xd8, 0xff, ..] => Ok(Self::Jpeg),
-            _ => Err(match image::guess_format(head) {
-                Ok(other) => format!("it is a {} file; vglare reads {NAMES}", other.extensions_str()[0].to_uppercase()),
-                Err(_) => format!("it is not a picture of a known kind; vglare reads {NAMES}"),
+            _ => Err(match other_name(head) {
+                Some(name) => format!("it is a {name} file; vglare reads {NAMES}"),
+                None => format!("it is not a picture of a known kind; vglare reads {NAMES}"),
             }
             .into()),
         }
@@ -95,6 +95,23 @@ impl Format {
             other => Err(format!("vglare writes {EXTENSIONS}, not .{other}").into()),
         }
     }
+}
+
+/// The name of a format that is known by its first bytes, but not read.
+fn other_name(head: &[u8]) -> Option<String> {
+    let name = match head {
+        [0xff, 0x0a, ..] | [0, 0, 0, 12, b'J', b'X', b'L', b' ', ..] => "JPEG XL",
+        [0, 0, 0, 12, b'j', b'P', b' ', b' ', ..] | [0xff, 0x4f, 0xff, 0x51, ..] => "JPEG 2000",
+        // ISO base media: the brand says whose. ISO/IEC 23008-12, annex B.
+        [_, _, _, _, b'f', b't', b'y', b'p', brand @ ..] => match brand.get(..4) {
+            Some(b"heic" | b"heix" | b"heim" | b"heis" | b"hevc" | b"mif1" | b"msf1") => "HEIC",
+            Some(b"avif" | b"avis") => "AVIF",
+            Some(b"crx ") => "Canon CR3",
+            _ => "film",
+        },
+        _ => return image::guess_format(head).ok().map(|other| other.extensions_str()[0].to_uppercase()),
+    };
+    Some(name.to_owned())
 }
 
 impl Depth {

@@ -10,6 +10,7 @@
 //! where there is none the sRGB curve. Their pixels come out in linear light of Rec.709 primaries, 1 is display white.
 //! What a file says wrongly or in an unknown way becomes one of [`Source::notes`], and what an output cannot hold of a
 //! photo's colours is told by [`lost()`]. Pictures for displays are written as sRGB, and say so.
+//! A JPEG with a gain map (Ultra HDR) is brightened by it, and counts as scene-linear light of Rec.709 primaries.
 //!
 //! # Alpha
 //!

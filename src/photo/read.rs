@@ -49,8 +49,10 @@ pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Photo> {
         let mut reader = open(path)?;
         let format = Format::from_magic(reader.fill_buf()?)?;
         let mut photo = decode(reader, format, options)?;
+        // A JPEG with a gain map is scene-linear, and of Rec. 709's primaries whatever its own are.
         if let Some(primaries) = options.primaries
             && !photo.source.display_referred
+            && format != Format::Jpeg
         {
             photo.source.primaries = primaries.other_than_rec709();
         }

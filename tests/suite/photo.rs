@@ -7,6 +7,7 @@ mod exr;
 mod exr_gaps;
 mod exr_layers;
 mod exr_sampled;
+mod jpeg;
 mod target;
 mod tiff;
 

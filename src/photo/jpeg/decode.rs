@@ -164,7 +164,7 @@ fn alone(walk: &Walk, number: usize) -> Vec<u8> {
 /// 65535 for full light, whatever the samples' bits.
 fn spread(mut samples: Vec<u16>, bits: u8) -> Vec<u16> {
     let most = (1_u32 << bits) - 1;
-    samples.iter_mut().for_each(|v| *v = (u32::from(*v).min(most) * 65535).div_euclid(most) as u16);
+    samples.iter_mut().for_each(|v| *v = ((u32::from(*v).min(most) * 65535 + most / 2) / most) as u16);
     samples
 }
 
@@ -190,6 +190,7 @@ where
 fn tell(warnings: &[DecodeWarning], notes: &mut Vec<String>) {
     for warning in warnings {
         let note = match warning {
+            DecodeWarning::ExtraneousData { bytes: 1 } => "a stray byte between its markers was passed over".into(),
             DecodeWarning::ExtraneousData { bytes } => {
                 format!("{bytes} stray bytes between its markers were passed over")
             }

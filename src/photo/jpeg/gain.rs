@@ -6,6 +6,7 @@
 //! The map is applied in full, as a display would show it whose white can be as much brighter as the file asks for:
 //! the photo is then light beyond display white, and counts as scene-linear.
 
+use glam::{DMat3, Mat3A, Vec3A};
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageBuffer};
 use rayon::prelude::*;
@@ -22,13 +23,14 @@ const MOST_PICTURES: usize = 16;
 
 const APPLE: &str = "http://ns.apple.com/HDRGainMap/";
 
-/// Finds the gain map behind the picture, and brightens the photo by it; `orientation` is how the photo was turned.
+/// Finds the gain map behind the picture, and brightens the photo by it; `orientation` is how the photo was turned, and
+/// `to_rec709` how its own primaries became Rec. 709's.
 ///
 /// Says in the photo's notes what was done, or why nothing was.
-pub(super) fn apply(walk: &Walk, orientation: Orientation, photo: &mut Photo) {
+pub(super) fn apply(walk: &Walk, orientation: Orientation, to_rec709: Option<DMat3>, photo: &mut Photo) {
     let note = match find(walk.behind) {
         Found::Map(map, recipe) => match Map::new(&map, orientation) {
-            Ok(map) => brighten(photo, &map, &recipe),
+            Ok(map) => brighten(photo, &map, &recipe, to_rec709),
             Err(error) => format!("it has a gain map that cannot be read ({error}), and is read as SDR"),
         },
         Found::Apple => "it has a gain map of Apple's kind, which is not applied: it is read as SDR".into(),
@@ -112,8 +114,18 @@ impl Map {
     }
 }
 
-/// [UHDR]: light = (light + offset) × 2 ^ gain − offset.
-fn brighten(photo: &mut Photo, map: &Map, recipe: &Recipe) -> String {
+/// [UHDR]: light = (light + offset) × 2 ^ gain − offset, in the plain picture's own primaries.
+fn brighten(photo: &mut Photo, map: &Map, recipe: &Recipe, to_rec709: Option<DMat3>) -> String {
+    let is_grey = map.channels == 1 && recipe.is_grey();
+    // One gain for all three colours is the same in any primaries.
+    let to_rec709 = to_rec709.filter(|_| !is_grey);
+    let ways = to_rec709.map(|matrix| [matrix.inverse(), matrix].map(|way| Mat3A::from(way.as_mat3())));
+    let turn = |pixel: &mut [f32; 4], way: usize| {
+        if let Some(ways) = ways {
+            let light = ways[way] * Vec3A::new(pixel[0], pixel[1], pixel[2]);
+            pixel[..3].copy_from_slice(&light.to_array());
+        }
+    };
     let (width, height) = (photo.width() as usize, photo.height() as usize);
     let (across, down) = (map.width as f32 / width as f32, map.height as f32 / height as f32);
     photo.pixels.par_chunks_exact_mut(width).enumerate().for_each(|(row, pixels)| {
@@ -124,13 +136,15 @@ fn brighten(photo: &mut Photo, map: &Map, recipe: &Recipe) -> String {
             if map.channels == 3 {
                 (code[1], code[2]) = (map.at(x, y, 1), map.at(x, y, 2));
             }
+            turn(pixel, 0);
             for channel in 0..3 {
                 pixel[channel] = recipe.light(pixel[channel], code[channel], channel);
             }
+            turn(pixel, 1);
         }
     });
     photo.source.display_referred = false;
-    photo.source.grey &= map.channels == 1 && recipe.is_grey();
+    photo.source.grey &= is_grey;
     let times = recipe.most();
     format!(
         "its gain map (Ultra HDR) was applied in full: it is light up to {times:.3} times the plain picture's white"

@@ -76,7 +76,9 @@ impl Recipe {
             let (above, below) = (word()? as i32, common.map_or_else(&mut word, Ok)?);
             Ok((f64::from(above) / f64::from(below)) as f32)
         };
-        (number()?, number()?);
+        // The headrooms say for which displays the map is meant in part; here it is applied in full.
+        number()?;
+        number()?;
         let mut channels = [[0.0; 5]; 3];
         let count = if flags & THREE_CHANNELS == 0 { 1 } else { 3 };
         for channel in channels.iter_mut().take(count) {
@@ -133,7 +135,7 @@ fn words<'a>(document: &'a Document, name: &str) -> Option<Vec<&'a str>> {
         }
         let here = node.is_element() && node.has_tag_name((HDRGM, name));
         let text = |node: roxmltree::Node<'a, '_>| node.text().map(str::trim).filter(|text| !text.is_empty());
-        let listed = || node.descendants().filter_map(text).collect::<Vec<_>>();
+        let listed = || node.descendants().filter(|node| node.is_text()).filter_map(text).collect::<Vec<_>>();
         here.then(listed).filter(|words| !words.is_empty())
     })
 }

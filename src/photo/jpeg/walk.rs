@@ -7,6 +7,8 @@ const EOI: u8 = 0xd9;
 const SOS: u8 = 0xda;
 const DNL: u8 = 0xdc;
 const DHP: u8 = 0xde;
+/// The frame marker of ITU-T T.87.
+const SOF55: u8 = 0xf7;
 pub(super) const DQT: u8 = 0xdb;
 pub(super) const DHT: u8 = 0xc4;
 const DAC: u8 = 0xcc;
@@ -116,6 +118,7 @@ impl<'a> Walk<'a> {
                 0xd0..=0xd7 | 0x01 => continue,
                 SOI => return Err("the file is damaged: a second picture begins within the first".into()),
                 DNL => return Err("its height stands behind its first scan (DNL), which vglare does not read".into()),
+                SOF55 => return Err("it is a JPEG-LS picture, which vglare does not read".into()),
                 DHP => return Err("it is a hierarchical JPEG, which vglare does not read".into()),
                 _ => {}
             }
@@ -228,7 +231,8 @@ impl Frame {
             return Err(format!("it has {count} colour components; vglare reads JPEG of 1, 3 or 4").into());
         }
         if marker & 0x8 != 0 {
-            return Err("it is a JPEG of arithmetic coding, in which nothing tells whether data are missing; vglare reads Huffman coding".into());
+            // Its decoder makes something of any data, so that nothing would tell that some are missing.
+            return Err("it is a JPEG of arithmetic coding, which vglare does not read".into());
         }
         let (width, height) = (u16::from_be_bytes([*w1, *w0]).into(), u16::from_be_bytes([*h1, *h0]).into());
         if height == 0 && width > 0 {
