@@ -90,7 +90,7 @@ pub enum Error {
     Memory { reason: String },
 
     /// The system gives no thread to work on, or too few.
-    #[error("no threads can be started: {reason}")]
+    #[error("too few threads can be started: {reason}")]
     Threads { reason: String },
 
     /// A mistake in the program itself.
