@@ -48,7 +48,7 @@ pub(super) fn encoding(
         (Curve::Linear, _) => "its numbers are taken as linear light of Rec. 709",
         _ => "its colours are taken as sRGB",
     };
-    match (Profile::parse(icc, grey), options.primaries) {
+    match (Profile::new(icc, grey), options.primaries) {
         (Ok(Some(Profile { way: Way::Shaper(shaper), .. })), Some(primaries)) => {
             return Encoding::Curves(Box::new(Shaper::new(shaper.curves, Some(primaries))));
         }
@@ -73,13 +73,8 @@ impl Profile {
     /// The way of an embedded profile; none if it is for other than RGB or grey samples (a decoder has converted them).
     ///
     /// # Errors
-    /// Where the profile is damaged or of a kind that moxcms cannot read.
-    pub fn new(icc: &[u8], grey_samples: bool) -> Result<Option<Self>, Reason> {
-        Self::parse(icc, grey_samples).map_err(|reason| format!("its ICC profile {reason}").into())
-    }
-
-    /// The same; the reason goes on after "its ICC profile".
-    fn parse(icc: &[u8], grey_samples: bool) -> Result<Option<Self>, Reason> {
+    /// Where the profile is damaged or of a kind that moxcms cannot read; the reason goes on after "its ICC profile".
+    fn new(icc: &[u8], grey_samples: bool) -> Result<Option<Self>, Reason> {
         let space = head::check(icc)?;
         if space != *b"RGB " && !(space == *b"GRAY" && grey_samples) {
             return Ok(None);
