@@ -170,8 +170,8 @@ fn converted<T: Into<U>, U>(tables: Vec<T>) -> Vec<U> {
     tables.into_iter().map(Into::into).collect()
 }
 
-/// The most that a scene, lens, light or profile file may hold: some 100,000 lights.
-const MOST_BYTES: u64 = 16 << 20;
+/// The most that a scene, lens, light or profile file may hold: some 150,000 lights as `vglare lights --json` prints them.
+const MOST_BYTES: u64 = 32 << 20;
 
 /// What a file holds.
 ///

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::bell::{Modes, Radial, Shape};
 use super::paraboloid::cut_off;
-use super::special::{bessel_j, paraboloid_cubics, paraboloid_kernel};
+use super::special::{bessel_j, paraboloid_kernel, paraboloid_kernel_looked_up};
 use super::tails::copies;
 
 /// Most rows of a table.
@@ -20,6 +20,9 @@ pub const MOST_ROWS: usize = 4096;
 
 /// Radii, but for 0, in sizes: their squares, and one over these, are f32 on the GPU.
 const RADII: [f64; 2] = [1e-15, 1e15];
+
+/// Rows from which on kernels are looked up: every mode of a series asks for those of all rows.
+const FEW_ROWS: usize = 64;
 
 /// Steps of the table of what lies beyond a frequency: their width times the profile's radius, and how many there are.
 const STEP: f64 = 0.25;
@@ -34,8 +37,11 @@ pub struct Profile {
     values: Vec<f64>,
     /// dg/d(r²) from each row to the next; 0 after the last.
     slopes: Vec<f64>,
-    /// The largest absolute value from each row on.
+    /// The largest absolute value from each row on, and the steepest that it is.
     reach: Vec<f64>,
+    steepest: Vec<f64>,
+    /// Radius and weight of the paraboloids' kernels in ĝ/2π, one for each row after the first.
+    kernels: Vec<[f64; 2]>,
     /// ĝ(0), and the mean square distance from the centre along an axis.
     volume: f64,
     variance: f64,
@@ -100,11 +106,21 @@ impl Profile {
             .map(|i| (values[i] - values[i - 1]) / (radii[i] * radii[i] - radii[i - 1] * radii[i - 1]))
             .collect();
         slopes.push(0.0);
-        let mut reach: Vec<f64> = values.iter().map(|value| value.abs()).collect();
-        for i in (1..reach.len()).rev() {
-            reach[i - 1] = reach[i - 1].max(reach[i]);
-        }
-        let mut profile = Self { radii, values, slopes, reach, volume: 0.0, variance: 0.0, beyond: OnceLock::new() };
+        let reach = from_each_on(values.iter().map(|value| value.abs()).collect());
+        let steepest = (0..rows.len()).map(|i| 2.0 * slopes[i].abs() * radii.get(i + 1).unwrap_or(&0.0));
+        let steepest = from_each_on(steepest.collect());
+        let mut profile = Self {
+            radii,
+            values,
+            slopes,
+            reach,
+            steepest,
+            kernels: Vec::new(),
+            volume: 0.0,
+            variance: 0.0,
+            beyond: OnceLock::new(),
+        };
+        profile.kernels = profile.kinks().map(|(radius, kink)| [radius, 0.25 * kink * radius.powi(4)]).collect();
         profile.volume = profile.transform(0.0);
         profile.variance = profile.mean_square();
         profile
@@ -176,29 +192,23 @@ impl Profile {
 
     /// A bound of |ĝ| at each step of z and as far as the middle of the next.
     fn sampled(&self) -> Vec<f64> {
-        // By looking the kernel up: it is needed at every step for every row.
-        const FINE: f64 = 32.0;
-        const OFF: f64 = 1e-8;
-        let cubics = paraboloid_cubics(1.0 / FINE, (STEP * STEPS as f64 * FINE) as u32 + 2);
-        let kinks: Vec<[f64; 2]> =
-            self.kinks().map(|(radius, kink)| [radius / self.radius(), 0.25 * kink * radius.powi(4)]).collect();
+        // What looking the kernels up may be off by: a part of what they are, which falls as t^(−5/2).
+        let off = if self.looks_up() { 1e-8 } else { 0.0 };
+        let weights: f64 = self.kernels.iter().map(|[_, weight]| weight.abs()).sum();
+        let falling = self.kernels.iter().map(|[radius, weight]| weight.abs() * (radius / self.radius()).powf(-2.5));
+        let falling: f64 = 8.0 * falling.sum::<f64>();
         let bound = |i: usize| {
             let end = STEP * i as f64;
-            let (mut sum, mut off) = (0.0, 0.0);
-            for &[radius, weight] in &kinks {
-                let t = end * radius;
-                let cell = (t * FINE) as usize;
-                let [a, b, c, d] = cubics[cell];
-                let u = t * FINE - cell as f64;
-                sum += weight * (a + u * (b + u * (c + u * d)));
-                off += weight.abs();
-            }
-            // A cubic is off by 1/384 FINE⁴ of what the kernel's waves are, which fall as t^(−5/2).
-            let off = OFF * off * (8.0 * end.powf(-2.5)).min(1.0);
+            let off = off * weights.min(falling * end.powf(-2.5));
             // ĝ has nothing faster than the radius in it, so between steps it is hardly larger than at them.
-            1.05 * TAU * ((self.stepped(end) + sum).abs() + off)
+            1.05 * (self.transform(end / self.radius()).abs() + TAU * off)
         };
         (0..=STEPS).into_par_iter().map(bound).collect()
+    }
+
+    /// Whether the kernels of so many rows are looked up and not computed.
+    fn looks_up(&self) -> bool {
+        self.kernels.len() > FEW_ROWS
     }
 
     /// What the step at the end adds to ĝ/2π, as a disc; `end` is z times the radius.
@@ -212,6 +222,14 @@ impl Profile {
         let kinks: f64 = self.kinks().map(|(radius, kink)| kink.abs() * radius * radius * cut_off(z * radius)).sum();
         kinks + self.step().abs() * (0.6 + 1.0 / (z * self.radius()).sqrt())
     }
+}
+
+/// The largest of the values from each on.
+fn from_each_on(mut values: Vec<f64>) -> Vec<f64> {
+    for i in (1..values.len()).rev() {
+        values[i - 1] = values[i - 1].max(values[i]);
+    }
+    values
 }
 
 impl Shape for Profile {
@@ -242,8 +260,7 @@ impl Shape for Profile {
     }
 
     fn steepest(&self, distance: f64) -> f64 {
-        let later = (0..self.radii.len() - 1).filter(|&i| self.radii[i + 1] > distance);
-        later.map(|i| 2.0 * self.slopes[i].abs() * self.radii[i + 1]).fold(0.0, f64::max)
+        self.steepest[self.radii[1..].partition_point(|&radius| radius <= distance)]
     }
 
     fn integral(&self, size: DVec2) -> f64 {
@@ -270,8 +287,8 @@ impl Shape for Profile {
 impl Radial for Profile {
     /// Twice by parts, with ∫ r² J1(qr) dr = r² J2(qr)/q: the step at the end as a disc, every kink as a paraboloid.
     fn transform(&self, z: f64) -> f64 {
-        let kinks: f64 =
-            self.kinks().map(|(radius, kink)| 0.25 * kink * radius.powi(4) * paraboloid_kernel(z * radius)).sum();
+        let kernel = if self.looks_up() { paraboloid_kernel_looked_up } else { paraboloid_kernel };
+        let kinks: f64 = self.kernels.iter().map(|&[radius, weight]| weight * kernel(z * radius)).sum();
         TAU * (self.stepped(z * self.radius()) + kinks)
     }
 
@@ -311,6 +328,34 @@ mod tests {
         let made = shared.beyond.get().unwrap().as_ptr();
         assert_eq!((Radial::beyond(&*shared, 20.0, 0.1), shared.beyond.get().unwrap().as_ptr()), (first, made));
         assert_eq!(*shared, trembling(), "the same profile, whatever has been made of it");
+    }
+
+    #[test]
+    fn a_profile_is_as_steep_as_its_rows_from_a_distance_on() {
+        let profile = Profile::new(&[[0.0, 1.0], [0.5, 0.9], [1.0, 0.0], [2.0, -0.1], [3.0, 0.0]]).unwrap();
+        // 2 r dg/d(r²) at the outer row: 0.9/0.75 of r = 1, and so on.
+        let expected =
+            [(0.0, 2.4), (0.99, 2.4), (1.0, 2.0 * 2.0 * 0.1 / 3.0), (2.5, 2.0 * 3.0 * 0.1 / 5.0), (3.0, 0.0)];
+        for (distance, steepest) in expected {
+            assert!(
+                (profile.steepest(distance) - steepest).abs() < 1e-12,
+                "{distance}: {}",
+                profile.steepest(distance)
+            );
+        }
+    }
+
+    #[test]
+    fn kernels_that_are_looked_up_are_those_that_are_computed() {
+        let profile = trembling();
+        assert!(profile.looks_up());
+        for z in [0.0, 1e-3, 0.7, 12.3, 456.7, 2345.6] {
+            let kinks: f64 =
+                profile.kernels.iter().map(|[radius, weight]| weight * paraboloid_kernel(z * radius)).sum();
+            let exact = TAU * (profile.stepped(z * profile.radius()) + kinks);
+            let off = (profile.transform(z) - exact).abs();
+            assert!(off < 1e-8 * profile.volume, "{z}: {off:e}");
+        }
     }
 
     #[test]

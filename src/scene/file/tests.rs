@@ -300,9 +300,9 @@ fn only_regular_files_that_are_not_too_long_are_read() {
     let comment = |bytes: usize| {
         fs::write(&path, format!("#{}\n[[light]]\nposition = [0, 0]\nflux = [1, 1, 1]", " ".repeat(bytes)))
     };
-    comment(16 << 20).unwrap();
-    refused(&|| read_lights(&path).unwrap_err(), "is larger than 16 MiB");
-    comment((16 << 20) - 100).unwrap();
+    comment(32 << 20).unwrap();
+    refused(&|| read_lights(&path).unwrap_err(), "is larger than 32 MiB");
+    comment((32 << 20) - 100).unwrap();
     let link = folder.path().join("link.toml");
     #[cfg(unix)]
     std::os::unix::fs::symlink(&path, &link).unwrap();

@@ -20,5 +20,5 @@ pub use bessel_i::{ive, ive_all};
 pub use bessel_j::{Factorial, bessel_j, bessel_j_all, bessel_j_series};
 pub use cubics::bessel_cubics;
 pub use error_function::{erf, re_erf_scaled};
-pub use kernels::{parabola_kernel, paraboloid_cubics, paraboloid_kernel};
+pub use kernels::{parabola_kernel, paraboloid_kernel, paraboloid_kernel_looked_up};
 pub use zeros::{J0Zero, j0_zeros};

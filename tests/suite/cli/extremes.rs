@@ -93,7 +93,7 @@ fn pixels_that_are_not_square_are_told_in_summary_report_and_plan() {
     let ran = place.vglare(&args).succeeded();
     assert!(ran.stdout().contains("pixels 2.0000 times as wide as high"), "{}", ran.stdout());
     let report: serde_json::Value = serde_json::from_slice(&std::fs::read(place.path("a.json")).unwrap()).unwrap();
-    assert_eq!(report["photo"]["pixel_aspect"], 2.0);
+    assert_eq!(report["input"]["pixel_aspect"], 2.0);
     let planned = place.vglare(&["plan", "in.exr", "--scene", "scene.toml", "--size", "80x50"]).succeeded();
     assert!(planned.stdout().contains("80 x 50 pixels, 2.0000 times as wide as high"), "{}", planned.stdout());
     for name in ["out.exr", "glare.exr"] {

@@ -185,7 +185,7 @@ fn windows_and_attributes_are_told() {
     put(&path, vec![header]);
     let photo = photo::read(&path).unwrap();
     let window = Window { x: -3, y: 5, width: 37, height: 21 };
-    assert_eq!(photo.frame, Frame::full(40, 30).with_window(window));
+    assert_eq!(photo.frame, Frame { pixel_aspect: 1.5, ..Frame::full(40, 30).with_window(window) });
     assert_eq!((photo.source.alpha, photo.source.depth), (Alpha::Premultiplied, Depth::Float));
     let weights = photo.luminance_weights();
     assert!((weights[0] - 0.2722).abs() < 1e-3 && (weights.iter().sum::<f64>() - 1.0).abs() < 1e-9, "{weights:?}");
