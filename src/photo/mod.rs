@@ -103,6 +103,8 @@ pub struct Source {
     pub picture: Option<String>,
     /// What a person ought to know of how the file was read: what was damaged, missing, or taken for something else.
     pub notes: Vec<String>,
+    /// Whether it is more to be written fast than small.
+    quick: bool,
     /// Everything else that an OpenEXR file held.
     exr: Option<Arc<exr::Rest>>,
 }
@@ -120,6 +122,7 @@ impl Source {
             pixel_aspect: 1.0,
             picture: None,
             notes: Vec::new(),
+            quick: false,
             exr: None,
         }
     }
@@ -137,7 +140,8 @@ impl Photo {
     }
 
     /// Another picture in the same frame and of the same primaries, which comes from no file: scene-linear, without
-    /// alpha, and with the attributes that an OpenEXR photo has, but nothing else of what this photo's file held.
+    /// alpha, and with the attributes that an OpenEXR photo has, but nothing else of what this photo's file held. As
+    /// OpenEXR it is written fast rather than small.
     ///
     /// # Panics
     /// If there are not as many pixels as the window holds.
@@ -145,7 +149,7 @@ impl Photo {
         assert_eq!(pixels.len(), self.frame.window.pixels(), "a photo needs as many pixels as its window");
         let Source { primaries, pixel_aspect, .. } = self.source;
         let exr = self.source.exr.as_ref().map(|rest| Arc::new(rest.attributes_only(primaries)));
-        let source = Source { primaries, pixel_aspect, exr, ..Source::plain() };
+        let source = Source { primaries, pixel_aspect, quick: true, exr, ..Source::plain() };
         Self { frame: self.frame, pixels, source }
     }
 

@@ -3,12 +3,14 @@
 mod bad_input;
 mod calibrate;
 mod harmonics;
+mod interrupted;
 mod look;
 mod outputs;
 mod plan;
 mod refusals;
 mod rex;
 mod sequence;
+mod targets;
 mod tradeoff;
 mod view;
 

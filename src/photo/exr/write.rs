@@ -24,9 +24,6 @@ use super::read::{explain, frame};
 /// Blocks that are compressed together.
 const BLOCKS_A_THREAD: usize = 4;
 
-/// How a picture is compressed that comes from no OpenEXR file.
-pub(super) const COMPANION: Compression = Compression::ZIP16;
-
 /// What a channel of the main part is filled with.
 #[derive(Clone, Copy)]
 struct Fill<'p> {
@@ -56,7 +53,8 @@ pub fn write(writer: impl Write + Seek, photo: &Photo, depth: Depth) -> Result<(
     let (list, fills): (Vec<_>, _) = channels.into_iter().unzip();
     let main = Main { photo, part, fills, premultiply: photo.source.alpha == Alpha::Straight };
     headers[part].channels = ChannelList::new(list.into_iter().collect());
-    headers[part] = without_loss(headers[part].clone());
+    let header = headers[part].clone();
+    headers[part] = if photo.source.quick { quickly(header, depth) } else { without_loss(header) };
     block::write(writer, headers, false, |meta, writer| {
         for part in 0..meta.headers.len() {
             if part == main.part {
@@ -87,7 +85,7 @@ fn plain_header(photo: &Photo) -> Header {
     let chromaticities = photo.source.primaries.map(chromaticities);
     let place = LayerAttributes { layer_position: Vec2(window.x, window.y), ..LayerAttributes::default() };
     Header::new(Text::from("picture"), size, Default::default())
-        .with_encoding(COMPANION, BlockDescription::ScanLines, LineOrder::Increasing)
+        .with_encoding(Compression::ZIP16, BlockDescription::ScanLines, LineOrder::Increasing)
         .with_attributes(place)
         .with_shared_attributes(ImageAttributes {
             chromaticities,
@@ -100,6 +98,14 @@ pub(super) fn chromaticities(primaries: Primaries) -> Chromaticities {
     let point = |p: DVec2| Vec2(p.x as f32, p.y as f32);
     let Primaries { red, green, blue, white } = primaries;
     Chromaticities { red: point(red), green: point(green), blue: point(blue), white: point(white) }
+}
+
+/// For a picture that is smooth and was computed, so that the last bits of its floats are noise: at 1920 × 1080 on two
+/// cores, ZIP makes 22.8 MB of 24.9 in 5.7 s, RLE as good as nothing in 0.2 s, but little of black. Of half floats, ZIPS
+/// makes 1.5 MB of 12.4 in 0.7 s, and ZIP 1.3 MB in 1.9 s.
+fn quickly(header: Header, depth: Depth) -> Header {
+    let compression = if depth == Depth::Half { Compression::ZIP1 } else { Compression::RLE };
+    header.with_encoding(compression, BlockDescription::ScanLines, LineOrder::Increasing)
 }
 
 fn without_loss(header: Header) -> Header {
