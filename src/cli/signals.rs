@@ -23,7 +23,7 @@ pub fn listen() {
     let Ok(mut signals) = Signals::new(ends) else { return };
     let handle = signals.handle();
     let watch = move || {
-        for signal in signals.forever() {
+        if let Some(signal) = signals.forever().next() {
             let _held = crate::target::part::remove_all();
             let _ = emulate_default_handler(signal);
             std::process::exit(128 + signal);

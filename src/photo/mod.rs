@@ -113,6 +113,8 @@ pub struct Source {
     pub space: Option<String>,
     /// What a person ought to know of how the file was read: what was damaged, missing, or taken for something else.
     pub notes: Vec<String>,
+    /// Whether it is more to be written fast than small.
+    quick: bool,
     /// Everything else that an OpenEXR file held.
     exr: Option<Arc<exr::Rest>>,
     /// What the header of a Radiance file held.
@@ -133,6 +135,7 @@ impl Source {
             picture: None,
             space: None,
             notes: Vec::new(),
+            quick: false,
             exr: None,
             radiance: None,
         }
@@ -152,7 +155,7 @@ impl Photo {
 
     /// Another picture in the same frame and of the same primaries, which comes from no file: scene-linear, without
     /// alpha, with the attributes that an OpenEXR photo has and the header of a Radiance one, on which the numbers' unit
-    /// depends, but with nothing else of what this photo's file held.
+    /// depends, but with nothing else of what this photo's file held. As OpenEXR it is written fast rather than small.
     ///
     /// # Panics
     /// If there are not as many pixels as the window holds.
@@ -161,7 +164,7 @@ impl Photo {
         let Source { primaries, pixel_aspect, radiance, exr, .. } = &self.source;
         let exr = exr.as_ref().map(|rest| Arc::new(rest.attributes_only(*primaries)));
         let (primaries, pixel_aspect, radiance) = (*primaries, *pixel_aspect, radiance.clone());
-        let source = Source { primaries, pixel_aspect, radiance, exr, ..Source::plain() };
+        let source = Source { primaries, pixel_aspect, radiance, quick: true, exr, ..Source::plain() };
         Self { frame: self.frame, pixels, source }
     }
 

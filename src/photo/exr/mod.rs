@@ -31,6 +31,7 @@ mod write;
 use std::fmt;
 
 use exr::block::chunk::Chunk;
+use exr::compression::Compression;
 use exr::meta::attribute::{ChannelDescription, ChannelList, LineOrder, SampleType};
 use exr::meta::{BlockDescription, Headers};
 
@@ -70,7 +71,7 @@ impl Rest {
             header.shared_attributes.chromaticities = primaries.map(write::chromaticities);
         }
         (header.own_attributes.preview, header.own_attributes.multi_view_names) = (None, None);
-        let header = header.with_encoding(write::COMPANION, BlockDescription::ScanLines, LineOrder::Increasing);
+        let header = header.with_encoding(Compression::RLE, BlockDescription::ScanLines, LineOrder::Increasing);
         let roles = [2, 1, 0].map(Role::Component).to_vec();
         let member = Member { part: 0, prefix: String::new(), roles };
         Self {

@@ -25,9 +25,6 @@ use crate::frame::Frame;
 /// Blocks that are compressed together.
 const BLOCKS_A_THREAD: usize = 4;
 
-/// How a picture is compressed that comes from no OpenEXR file.
-pub(super) const COMPANION: Compression = Compression::ZIP16;
-
 /// What a channel of the picture's parts is filled with.
 #[derive(Clone, Copy)]
 struct Fill<'p> {
@@ -51,6 +48,9 @@ pub fn write(writer: impl Write + Seek, photo: &Photo, depth: Depth) -> Result<(
         let mut header = plain_header(photo);
         let channels = with_depth(plain_channels(photo), depth);
         let main = Main::new(photo, 0, channels, &mut header);
+        if photo.source.quick {
+            header = quickly(header, depth);
+        }
         return Container::new(writer, Headers::from_elem(header, 1))?.finish(&[main], &[]);
     };
     let mut headers = rest.headers.clone();
@@ -70,6 +70,9 @@ pub fn write(writer: impl Write + Seek, photo: &Photo, depth: Depth) -> Result<(
             channels = with_depth(channels, depth);
         }
         mains.push(Main::new(photo, member.part, channels, header));
+        if photo.source.quick {
+            *header = quickly(header.clone(), depth);
+        }
     }
     let chunks: Vec<_> = rest.chunks.iter().filter(|(_, chunk)| !is_main(chunk)).collect();
     Container::new(writer, headers)?.finish(&mains, &chunks)
@@ -107,7 +110,7 @@ fn plain_header(photo: &Photo) -> Header {
     let pixel_aspect = photo.source.pixel_aspect as f32;
     let place = LayerAttributes { layer_position: Vec2(window.x, window.y), ..LayerAttributes::default() };
     Header::new(Text::from("picture"), size, Default::default())
-        .with_encoding(COMPANION, BlockDescription::ScanLines, LineOrder::Increasing)
+        .with_encoding(Compression::ZIP16, BlockDescription::ScanLines, LineOrder::Increasing)
         .with_attributes(place)
         .with_shared_attributes(ImageAttributes { chromaticities, pixel_aspect, ..ImageAttributes::new(bounds) })
 }
@@ -116,6 +119,14 @@ pub(super) fn chromaticities(primaries: Primaries) -> Chromaticities {
     let point = |p: DVec2| Vec2(p.x as f32, p.y as f32);
     let Primaries { red, green, blue, white } = primaries;
     Chromaticities { red: point(red), green: point(green), blue: point(blue), white: point(white) }
+}
+
+/// For a picture that is smooth and was computed, so that the last bits of its floats are noise: at 1920 × 1080 on two
+/// cores, ZIP makes 22.8 MB of 24.9 in 5.7 s, RLE as good as nothing in 0.2 s, but little of black. Of half floats, ZIPS
+/// makes 1.5 MB of 12.4 in 0.7 s, and ZIP 1.3 MB in 1.9 s.
+fn quickly(header: Header, depth: Depth) -> Header {
+    let compression = if depth == Depth::Half { Compression::ZIP1 } else { Compression::RLE };
+    header.with_encoding(compression, BlockDescription::ScanLines, LineOrder::Increasing)
 }
 
 fn without_loss(header: Header) -> Header {

@@ -87,7 +87,8 @@ impl Meaning {
         match &self.icc {
             // Primaries that were named go with the photo and not with its encoding: it is scene-linear.
             Some(_) if is_float && self.options.primaries.is_some() => {
-                self.notes.push("its ICC profile is left out, since primaries were named: its numbers are light".into());
+                self.notes
+                    .push("its ICC profile is left out, since primaries were named: its numbers are light".into());
                 Encoding::new(curve, None)
             }
             Some(icc) => icc::encoding(icc, grey, curve, &self.options, &mut self.notes),

@@ -100,6 +100,15 @@ fn patterns_name_the_pictures() {
 }
 
 #[test]
+fn frames_before_the_first_are_frames_of_their_own() {
+    let place = Workplace::new();
+    let names = ["n.-001.exr", "n.0001.exr", "take-2.exr"].map(String::from);
+    names.iter().enumerate().for_each(|(index, name)| drop(place.write(name, &shot(index))));
+    place.vglare(&apply(&names, &["-o", "o/x.####.exr"])).succeeded();
+    assert_eq!(listed(&place, "o"), ["x.-001.exr", "x.0001.exr", "x.0002.exr"]);
+}
+
+#[test]
 fn names_that_do_not_work_are_refused_before_anything_is_read() {
     let (place, mut names) = place(2);
     place.photo("lamp.exr");

@@ -14,7 +14,7 @@ use exr::meta::attribute::{
     AttributeValue, ChannelDescription, Chromaticities, IntegerBounds, LevelMode, LineOrder, SampleType, Text,
     TileDescription,
 };
-use exr::meta::header::Header;
+use exr::meta::header::{Header, LayerAttributes};
 use exr::meta::{BlockDescription, Headers};
 use vglare::frame::{Frame, Window};
 use vglare::photo::{self, Alpha, Depth, ToneMap, WriteOptions};
@@ -302,5 +302,37 @@ fn other_formats_get_the_picture_padded_with_black() {
             let stored = inside.then(|| photo.pixels[(row * width as i32 + column) as usize]);
             assert_eq!(*got, stored.unwrap_or([0.0, 0.0, 0.0, 1.0]), "{x} {y}: {column} {row}");
         }
+    }
+}
+
+#[test]
+fn a_companion_keeps_what_the_file_says_of_itself_and_no_more() {
+    let folder = Folder::new();
+    let tiled = header(&ALL, Compression::ZIP16, TILES);
+    let mut named = header(&ALL, Compression::PIZ, BlockDescription::ScanLines);
+    named.shared_attributes.chromaticities = Some(ACESCG);
+    named.own_attributes.multi_view_names = Some(vec![Text::from("left"), Text::from("right")]);
+    for (header, depth) in [(tiled, Depth::Float), (named, Depth::Half)] {
+        let path = folder.path("a.exr");
+        put(&path, vec![header.clone()]);
+        let photo = photo::read(&path).unwrap();
+        let pixels: Vec<_> =
+            (0..photo.pixels.len()).map(|k| [k as f32 * 0.25, 0.5, 1.0 / (k + 1) as f32, 1.0]).collect();
+        let glare = photo.companion(pixels.clone());
+        let options = WriteOptions { depth: Some(depth), overwrite: true, ..WriteOptions::default() };
+        photo::write(&folder.path("b.exr"), &glare, &options).unwrap();
+        let again = photo::read(&folder.path("b.exr")).unwrap();
+        assert_eq!((again.frame, again.source.primaries), (photo.frame, photo.source.primaries));
+        assert_eq!((again.source.depth, again.source.alpha), (depth, Alpha::None));
+        if depth == Depth::Float {
+            assert_eq!(again.pixels, pixels);
+        }
+        let (headers, _) = content(&folder.path("b.exr"));
+        assert_eq!(headers.len(), 1);
+        let names: Vec<_> = headers[0].channels.list.iter().map(|channel| channel.name.to_string()).collect();
+        assert_eq!(names, ["B", "G", "R"]);
+        assert_eq!(headers[0].shared_attributes, header.shared_attributes);
+        let own = LayerAttributes { multi_view_names: None, ..header.own_attributes.clone() };
+        assert_eq!(headers[0].own_attributes, own);
     }
 }

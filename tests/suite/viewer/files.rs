@@ -187,6 +187,32 @@ fn a_picture_that_cannot_be_written_is_told_of_and_leaves_nothing() {
 }
 
 #[test]
+fn no_photo_is_replaced_by_a_look_the_glare_or_anothers_picture() {
+    let (folder, mut session) = in_a_folder();
+    let path = |name: &str| folder.path().join(name);
+    photo::write(&path("other.exr"), &lamp(), &WriteOptions::default()).unwrap();
+    session.app.open(path("other.exr"));
+    session.wait(|app| !app.is_reading());
+    session.app.save_look(&path("look.toml"));
+    let files = ["lamp.exr", "other.exr", "look.toml"].map(path);
+    let before = files.clone().map(|path| std::fs::read(path).unwrap());
+    let at = |name: &str| folder.path().join("state/..").join(name);
+    std::fs::create_dir_all(path("state")).unwrap();
+    session.app.save_look(&at("other.exr"));
+    session.app.save_look(&at("lamp.exr"));
+    session.app.export(Subject::Glare, &at("other.exr"));
+    session.app.export(Subject::Picture, &at("lamp.exr"));
+    session.app.export(Subject::Picture, &at("look.toml"));
+    assert!(!session.app.is_writing());
+    // Each is told of once.
+    for (notice, name) in session.app.notices().iter().zip(["other.exr", "lamp.exr", "look.toml"]) {
+        assert!(notice.contains("would replace") && notice.contains(name), "{notice}");
+    }
+    assert_eq!(session.app.notices().len(), 3);
+    assert!(files.map(|path| std::fs::read(path).unwrap()) == before);
+}
+
+#[test]
 fn a_bad_look_is_told_of_and_the_old_one_stays() {
     let (folder, mut session) = in_a_folder();
     let path = folder.path().join("look.toml");
