@@ -64,7 +64,7 @@ pub struct FindArgs {
     max_lights: Option<usize>,
 
     /// A single pixel that is more than so many times as bright as each of its neighbours is a firefly or a hot pixel,
-    /// and no light; 0 takes it as it is [default: 5000]
+    /// and no light; 0 takes it as it is [default: 1000]
     #[arg(long, value_name = "F", value_parser = factor)]
     firefly_limit: Option<f64>,
 }

@@ -18,7 +18,7 @@
 //! threshold = 20.0
 //! merge = 0.02
 //! max_lights = 64
-//! firefly_limit = 5000        # a pixel that outshines its neighbours by more is no light; 0 takes it
+//! firefly_limit = 1000        # a pixel that outshines its neighbours by more is no light; 0 takes it
 //! add = false                 # whether the file's lights are added to the photo's
 //!
 //! [accuracy]

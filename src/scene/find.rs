@@ -33,13 +33,13 @@ pub struct FindOptions {
 }
 
 impl Default for FindOptions {
-    /// 0.02, the width of a thumb at arm's length in a normal lens, 64 lights, and twelve stops.
+    /// 0.02, the width of a thumb at arm's length in a normal lens, 64 lights, and ten stops.
     ///
     /// Of five panoramas and nine photos, each box-filtered to ten sizes, down to the sun in one pixel of 32 × 16, no
     /// pixel outshines its neighbours by more than 180; of those that a decoder had sampled without a filter, one by 900
     /// and one by 7800.
     fn default() -> Self {
-        Self { threshold: None, merge: 0.02, max_lights: 64, firefly_limit: 5000.0 }
+        Self { threshold: None, merge: 0.02, max_lights: 64, firefly_limit: 1000.0 }
     }
 }
 
@@ -91,7 +91,7 @@ pub fn find(pixels: &[[f32; 4]], frame: &Frame, emission: impl Into<Emission>, o
         None => threshold::automatic(&lit),
     };
     let mut found = regions(&lit, threshold as f32, frame.pixel_aspect);
-    let survey = lit.survey(threshold as f32);
+    let fireflies = lit.fireflies(threshold as f32);
     let regions = found.len();
     let total = found.iter().map(|region| region.weight).sum::<f64>().max(f64::MIN_POSITIVE);
     found.sort_by(brightest_first);
@@ -109,9 +109,9 @@ pub fn find(pixels: &[[f32; 4]], frame: &Frame, emission: impl Into<Emission>, o
         regions,
         dropped: dropped.len(),
         dropped_share: dropped.iter().fold(0.0, |sum, region| sum + region.weight / total),
-        fireflies: survey.fireflies,
-        first_firefly: survey.first.map(|(column, row)| (frame.window.x + column as i32, frame.window.y + row as i32)),
-        peak: survey.peak.into(),
+        fireflies: fireflies.len(),
+        first_firefly: fireflies.first().map(|&(i, j)| (frame.window.x + i as i32, frame.window.y + j as i32)),
+        peak: lit.peak().into(),
     }
 }
 

@@ -2,7 +2,8 @@
 //!
 //! A firefly is one pixel that outshines each of its eight neighbours by far: a path that a renderer's sampling met once,
 //! or a hot pixel of a sensor. What a lens has drawn is never like that, since it spreads a point over several pixels;
-//! nor is a small light in a picture made smaller, as long as its pixels are means.
+//! nor is a small light in a picture made smaller, as long as its pixels are means. A pixel that has nearly all of the
+//! photo's light is what the photo shows, and none.
 
 use std::ops::Range;
 
@@ -10,22 +11,81 @@ use rayon::prelude::*;
 
 use super::emission::Emission;
 
+/// A pixel with so many times the light of all that are no fireflies is a lamp in the dark.
+const ALL_THE_LIGHT: f64 = 100.0;
+
 /// A photo's pixels, row by row.
-#[derive(Clone, Copy)]
 pub(super) struct Lit<'a> {
     pixels: &'a [[f32; 4]],
     /// Pixels in a row, not 0.
     width: usize,
     emission: Emission,
-    /// How many times as bright as its brightest neighbour a pixel may be; infinite for whatever it likes.
-    limit: f32,
+    /// Indices of pixels, in order.
+    fireflies: Vec<usize>,
+    peak: f32,
+}
+
+/// What is seen of some rows, fireflies apart.
+#[derive(Default)]
+struct Seen {
+    /// Pixels that outshine their neighbours, in order, with their luminance.
+    alone: Vec<(usize, f32)>,
+    /// The luminance of all others.
+    sum: f64,
+    peak: f32,
 }
 
 impl<'a> Lit<'a> {
-    /// `limit` is 0 where every pixel is taken as it is.
+    /// A pixel may be `limit` times as bright as its brightest neighbour; 0 takes every pixel as it is.
     pub fn new(pixels: &'a [[f32; 4]], width: usize, emission: Emission, limit: f64) -> Self {
+        let mut lit = Self { pixels, width: width.max(1), emission, fireflies: Vec::new(), peak: 0.0 };
         let limit = if limit > 0.0 { limit as f32 } else { f32::INFINITY };
-        Self { pixels, width: width.max(1), emission, limit }
+        let bands: Vec<Seen> = lit.bands().map(|rows| lit.see(rows, limit)).collect();
+        let dark = bands.iter().map(|seen| seen.sum).sum::<f64>() * ALL_THE_LIGHT;
+        lit.peak = bands.iter().fold(0.0, |peak, seen| seen.peak.max(peak));
+        for &(index, luminance) in bands.iter().flat_map(|seen| &seen.alone) {
+            if f64::from(luminance) > dark {
+                lit.peak = lit.peak.max(luminance);
+            } else {
+                lit.fireflies.push(index);
+            }
+        }
+        lit
+    }
+
+    fn see(&self, rows: Range<usize>, limit: f32) -> Seen {
+        let mut seen = Seen::default();
+        for row in rows {
+            // Nearly every pixel fails to outshine the one before it, which costs nothing to find out.
+            let mut before = f32::NEG_INFINITY;
+            for (column, pixel) in self.row(row).iter().enumerate() {
+                let luminance = self.emission.luminance(pixel);
+                if luminance > limit * before && self.outshines(column, row, luminance, limit) {
+                    seen.alone.push((row * self.width + column, luminance));
+                } else {
+                    seen.sum += f64::from(luminance);
+                    seen.peak = seen.peak.max(luminance);
+                }
+                before = luminance;
+            }
+        }
+        seen
+    }
+
+    /// Whether a pixel of this luminance outshines all its neighbours, of which it has at least one.
+    fn outshines(&self, column: usize, row: usize, luminance: f32, limit: f32) -> bool {
+        if luminance <= 0.0 || limit.is_infinite() || self.pixels.len() == 1 {
+            return false;
+        }
+        let rows = row.saturating_sub(1)..(row + 2).min(self.pixels.len() / self.width);
+        let columns = column.saturating_sub(1)..(column + 2).min(self.width);
+        rows.flat_map(|j| columns.clone().map(move |i| (i, j)))
+            .filter(|&at| at != (column, row))
+            .all(|(i, j)| luminance > limit * self.emission.luminance(&self.pixels[j * self.width + i]))
+    }
+
+    fn row(&self, row: usize) -> &'a [[f32; 4]] {
+        &self.pixels[row * self.width..][..self.width]
     }
 
     /// All pixels, fireflies too.
@@ -51,65 +111,24 @@ impl<'a> Lit<'a> {
 
     /// Calls `each(column, luminance)` for the pixels of a row from the left; that of a firefly is 0.
     pub fn each(&self, row: usize, mut each: impl FnMut(usize, f32)) {
-        // Nearly every pixel fails to outshine the one before it, which costs nothing to find out.
-        let mut before = f32::NEG_INFINITY;
-        for (column, pixel) in self.pixels[row * self.width..][..self.width].iter().enumerate() {
-            let luminance = self.emission.luminance(pixel);
-            let firefly = luminance > self.limit * before && self.is_firefly(column, row, luminance);
-            each(column, if firefly { 0.0 } else { luminance });
-            before = luminance;
+        let start = row * self.width;
+        let mut fireflies = self.fireflies[self.fireflies.partition_point(|&index| index < start)..].iter().peekable();
+        for (column, pixel) in self.row(row).iter().enumerate() {
+            let is_firefly = fireflies.next_if(|&&index| index == start + column).is_some();
+            each(column, if is_firefly { 0.0 } else { self.emission.luminance(pixel) });
         }
     }
 
-    /// Whether a pixel of this luminance outshines all its neighbours, of which it has at least one.
-    pub fn is_firefly(&self, column: usize, row: usize, luminance: f32) -> bool {
-        if luminance <= 0.0 || self.limit.is_infinite() || self.pixels.len() == 1 {
-            return false;
-        }
-        let rows = row.saturating_sub(1)..(row + 2).min(self.pixels.len() / self.width);
-        let columns = column.saturating_sub(1)..(column + 2).min(self.width);
-        rows.flat_map(|j| columns.clone().map(move |i| (i, j)))
-            .filter(|&at| at != (column, row))
-            .all(|(i, j)| luminance > self.limit * self.emission.luminance(&self.pixels[j * self.width + i]))
+    /// Fireflies of at least this luminance: columns and rows, in the order of the pixels.
+    pub fn fireflies(&self, threshold: f32) -> Vec<(usize, usize)> {
+        let bright = |&&index: &&usize| self.emission.luminance(&self.pixels[index]) >= threshold;
+        self.fireflies.iter().filter(bright).map(|index| (index % self.width, index / self.width)).collect()
     }
 
-    /// What a threshold leaves out, and how bright the rest is.
-    pub fn survey(&self, threshold: f32) -> Survey {
-        let of_band = |rows: Range<usize>| {
-            let mut survey = Survey::default();
-            for row in rows {
-                let mut before = f32::NEG_INFINITY;
-                for (column, pixel) in self.pixels[row * self.width..][..self.width].iter().enumerate() {
-                    let luminance = self.emission.luminance(pixel);
-                    if !(luminance > self.limit * before && self.is_firefly(column, row, luminance)) {
-                        survey.peak = survey.peak.max(luminance);
-                    } else if luminance >= threshold {
-                        survey.fireflies += 1;
-                        survey.first = survey.first.or(Some((column, row)));
-                    }
-                    before = luminance;
-                }
-            }
-            survey
-        };
-        let bands: Vec<_> = self.bands().map(of_band).collect();
-        bands.into_iter().fold(Survey::default(), |all, band| Survey {
-            fireflies: all.fireflies + band.fireflies,
-            first: all.first.or(band.first),
-            peak: all.peak.max(band.peak),
-        })
+    /// The largest luminance, fireflies left out; 0 where there is none.
+    pub fn peak(&self) -> f32 {
+        self.peak
     }
-}
-
-/// What is known of a photo's pixels beside its lights.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Survey {
-    /// Fireflies that would be light.
-    pub fireflies: usize,
-    /// Column and row of the first.
-    pub first: Option<(usize, usize)>,
-    /// The largest luminance, fireflies left out.
-    pub peak: f32,
 }
 
 #[cfg(test)]
@@ -117,45 +136,41 @@ mod tests {
     use super::*;
 
     /// Fireflies of a picture of these luminances beyond a limit of 10.
-    fn fireflies(width: usize, luminances: &[f32]) -> (usize, Option<(usize, usize)>) {
+    fn fireflies(width: usize, luminances: &[f32]) -> Vec<(usize, usize)> {
         let pixels: Vec<_> = luminances.iter().map(|&l| [l, l, l, 1.0]).collect();
-        let survey = Lit::new(&pixels, width, [0.25, 0.5, 0.25].into(), 10.0).survey(0.5);
-        (survey.fireflies, survey.first)
+        Lit::new(&pixels, width, [0.25, 0.5, 0.25].into(), 10.0).fireflies(0.5)
     }
 
     #[test]
     fn a_firefly_outshines_all_its_neighbours() {
-        assert_eq!(fireflies(3, &[1.0, 1.0, 1.0, 1.0, 10.5, 1.0, 1.0, 1.0, 1.0]), (1, Some((1, 1))));
-        assert_eq!(fireflies(3, &[1.0, 1.0, 1.0, 1.0, 10.0, 1.0, 1.0, 1.0, 1.0]), (0, None));
+        assert_eq!(fireflies(3, &[1.0, 1.0, 1.0, 1.0, 10.5, 1.0, 1.0, 1.0, 1.0]), [(1, 1)]);
+        assert_eq!(fireflies(3, &[1.0, 1.0, 1.0, 1.0, 10.0, 1.0, 1.0, 1.0, 1.0]), []);
         for neighbour in [0, 1, 2, 3, 5, 6, 7, 8] {
             let mut luminances = [1.0; 9];
             (luminances[4], luminances[neighbour]) = (50.0, 5.0);
-            assert_eq!(fireflies(3, &luminances), (0, None), "{neighbour}");
+            assert_eq!(fireflies(3, &luminances), [], "{neighbour}");
         }
     }
 
     #[test]
     fn it_may_be_on_the_edge_and_is_none_alone() {
-        assert_eq!(fireflies(3, &[50.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 50.0]), (2, Some((0, 0))));
-        assert_eq!(fireflies(1, &[1.0, 50.0, 1.0]), (1, Some((0, 1))));
-        // The pixel before, in the row above, is no neighbour.
-        assert_eq!(fireflies(3, &[1.0, 1.0, 50.0, 1.0, 1.0, 1.0, 50.0, 1.0, 1.0]), (2, Some((2, 0))));
-        assert_eq!(fireflies(1, &[50.0]), (0, None));
-        assert_eq!(fireflies(2, &[0.0; 4]), (0, None));
+        assert_eq!(fireflies(3, &[50.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 50.0]), [(0, 0), (2, 2)]);
+        assert_eq!(fireflies(1, &[1.0, 50.0, 1.0]), [(0, 1)]);
+        assert_eq!(fireflies(1, &[50.0]), []);
     }
 
     #[test]
-    fn rows_have_the_luminance_of_all_but_fireflies() {
-        let pixels: Vec<_> = [0.0, 7.0, 0.0, 3.0, 3.0, 90.0].map(|l: f32| [l, l, l, 1.0]).to_vec();
-        let row = |limit: f64| {
-            let mut row = Vec::new();
-            Lit::new(&pixels, 6, [0.25, 0.5, 0.25].into(), limit).each(0, |_, luminance| row.push(luminance));
-            row
-        };
-        assert_eq!(row(0.0), [0.0, 7.0, 0.0, 3.0, 3.0, 90.0]);
-        assert_eq!(row(20.0), [0.0, 0.0, 0.0, 3.0, 3.0, 0.0]);
-        let survey = |threshold| Lit::new(&pixels, 6, [0.25, 0.5, 0.25].into(), 20.0).survey(threshold);
-        assert_eq!(survey(0.0), Survey { fireflies: 2, first: Some((1, 0)), peak: 3.0 });
-        assert_eq!(survey(8.0), Survey { fireflies: 1, first: Some((5, 0)), peak: 3.0 });
+    fn a_lamp_in_the_dark_is_none() {
+        let mut luminances = [0.0; 100];
+        luminances[37] = 50.0;
+        assert_eq!(fireflies(10, &luminances), []);
+        // The rest has a hundredth of its light, and a little more.
+        (luminances[90], luminances[91]) = (0.3, 0.3);
+        assert_eq!(fireflies(10, &luminances), [(7, 3)]);
+        let pixels: Vec<_> = luminances.iter().map(|&l| [l, l, l, 1.0]).collect();
+        let lit = Lit::new(&pixels, 10, [0.25, 0.5, 0.25].into(), 10.0);
+        let mut seen = Vec::new();
+        lit.each(3, |_, luminance| seen.push(luminance));
+        assert_eq!((seen, lit.peak()), (vec![0.0; 10], 0.3));
     }
 }

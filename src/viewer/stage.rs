@@ -270,7 +270,8 @@ impl Stage {
         let threshold = document.look.find.threshold.unwrap_or(document.found.threshold);
         let mask = Mask {
             threshold,
-            firefly_limit: document.look.find.firefly_limit,
+            // A lamp in the dark outshines its neighbours, too.
+            firefly_limit: if document.found.fireflies > 0 { document.look.find.firefly_limit } else { 0.0 },
             emission: Emission::of(&document.photo),
             origin: placement.origin,
             pitch: placement.pitch,

@@ -346,7 +346,7 @@ mod tests {
         let line = format!("vglare apply 'my night.exr' -o \"it's.png\" --scene {}", path.display());
         assert_eq!(look(&line), changed());
         let given = "--preset classic-prime --axis 0,0 --size 1 --tint 1,1,1 --threshold 2 --merge 0.02 \
-                     --max-lights 64 --firefly-limit 5000 --strength 1 --mix add --normalize none --tolerance 0.001 --degree 1,1 \
+                     --max-lights 64 --firefly-limit 1000 --strength 1 --mix add --normalize none --tolerance 0.001 --degree 1,1 \
                      --period 3,3 --evaluator grid";
         let expected = Look {
             find: FindOptions { threshold: Some(2.0), ..FindOptions::default() },
