@@ -69,7 +69,7 @@ mod tests {
     #[test]
     fn a_negative_sum_counts_as_0() {
         // Y of ACES2065-1 (SMPTE ST 2065-1, annex A): its blue is darker than black.
-        let ap0 = Emission { weights: [0.343_966_46, 0.728_166_1, -0.072_132_546], straight: false };
+        let ap0 = Emission { weights: [0.343_966_46, 0.728_166_1, -0.072_132_55], straight: false };
         assert_eq!(ap0.luminance(&[0.0, 0.0, 1.0, 1.0]).to_bits(), 0);
         assert_eq!(ap0.luminance(&[0.01, 0.001, 0.3, 1.0]), 0.0);
         assert!(ap0.luminance(&[0.1, 0.001, 0.3, 1.0]) > 0.0);

@@ -178,7 +178,7 @@ mod tests {
     fn of_very_many_lights_the_first_on_the_canvas_and_the_selected_one_have_handles() {
         // Every other light is far off the picture.
         let light = |index: u32| Light {
-            position: DVec2::new(if index % 2 == 0 { 0.5 } else { 50.0 }, 0.0),
+            position: DVec2::new(if index.is_multiple_of(2) { 0.5 } else { 50.0 }, 0.0),
             flux: [1.0; 3],
             size: 0.0,
             muted: false,
