@@ -131,7 +131,7 @@ mod tests {
             "First &amp; &lt;best&gt;",
             "What &quot;it&quot; is.",
             "<th scope=\"row\">degree</th><td class=\"number\">10</td>",
-            "<td class=\"number\">1.0e-3</td>",
+            "<td class=\"number\"><span class=\"unbroken\">1.0e-3</span></td>",
             "src=\"one/wave.png\" width=\"7\" height=\"5\"",
             "<a href=\"one/wave.csv\">CSV</a>",
             "<td>copy</td><td class=\"number\">1.5</td>",
