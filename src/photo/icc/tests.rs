@@ -113,6 +113,7 @@ fn what_cannot_be_read_is_srgb_with_a_note() {
         (lacking(b"rTRC"), "lacks a curve"),
         (lacking(b"gXYZ"), "lacks a primary"),
         (vec![0; LARGEST + 1], "more than"),
+        (with_curve(ColorProfile::new_srgb(), ToneReprCurve::Lut(vec![0])).encode().unwrap(), "a curve that is none"),
     ];
     for (icc, why) in cases {
         let mut notes = Vec::new();

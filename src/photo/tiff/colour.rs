@@ -144,9 +144,8 @@ pub(super) fn lab_to_light<C: Copy + Send + Sync>(
     share: impl Fn(C) -> f64 + Sync,
     signed: impl Fn(C) -> f64 + Sync,
 ) -> Vec<f32> {
-    let d50 = Primaries { white: DVec2::new(0.3457, 0.3585), ..Primaries::XYZ };
-    // From XYZ over that of white.
-    let matrix = d50.to_rec709();
+    let d50 = DVec2::new(0.3457, 0.3585);
+    let matrix = Primaries::relative_xyz_to_rec709(d50);
     let inverse = |t: f64| if t > 6.0 / 29.0 { t.powi(3) } else { 3.0 * (6.0_f64 / 29.0).powi(2) * (t - 4.0 / 29.0) };
     let light = |pixel: &[C]| {
         let l = (100.0 * share(pixel[0]) + 16.0) / 116.0;
