@@ -7,7 +7,7 @@ use moxcms::{ColorProfile, DataColorSpace, Layout, RenderingIntent, TransformExe
 use rayon::prelude::*;
 
 use super::super::transfer::Curve;
-use super::super::{Primaries, Reason};
+use super::super::{Primaries, Reason, icc};
 
 /// Pixels that are converted at a time.
 const CHUNK: usize = 1 << 12;
@@ -35,7 +35,9 @@ impl Cmyk {
     }
 
     fn by_profile(icc: &[u8]) -> Result<Self, Reason> {
-        let profile = ColorProfile::new_from_slice(icc)?;
+        let mut icc = icc.to_vec();
+        icc::tell_lab(&mut icc);
+        let profile = ColorProfile::new_from_slice(&icc)?;
         if profile.color_space != DataColorSpace::Cmyk {
             return Err("it is of another colour space".into());
         }
