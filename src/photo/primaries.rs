@@ -122,6 +122,11 @@ impl Primaries {
         Self::REC709.to_xyz().unwrap_or(DMat3::IDENTITY).inverse()
     }
 
+    /// The matrix from XYZ divided by that of `white`, so that (1, 1, 1) is white, to Rec.709: white to white.
+    pub(super) fn relative_xyz_to_rec709(white: DVec2) -> DMat3 {
+        Self::xyz_to_rec709() * adapt(white, D65) * DMat3::from_diagonal(xyz(white))
+    }
+
     /// The matrix from the XYZ of an ICC profile, whose white is D50, to Rec.709.
     pub(super) fn pcs_to_rec709() -> DMat3 {
         Self::xyz_to_rec709() * adapt(D50, D65)
@@ -196,6 +201,14 @@ mod tests {
         let weights = Primaries::ACES2065_1.luminance_weights();
         let want = [0.343_966_449_8, 0.728_166_096_6, -0.072_132_546_4];
         assert!(weights.iter().zip(want).all(|(got, want)| (got - want).abs() < 1e-6), "{weights:?}");
+    }
+
+    #[test]
+    fn xyz_over_white_is_white_in_rec709() {
+        for white in [D50, D65, ACES_WHITE, Primaries::XYZ.white] {
+            let light = Primaries::relative_xyz_to_rec709(white) * DVec3::ONE;
+            assert!((light - 1.0).abs().max_element() < 1e-12, "{light} for {white}");
+        }
     }
 
     #[test]

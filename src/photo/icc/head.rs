@@ -56,10 +56,26 @@ pub fn parse(icc: &[u8]) -> Result<ColorProfile, Reason> {
     // Profiles of the wild have dates of 0, and intents that do not exist.
     needed[24..36].copy_from_slice(&[7, 208, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0]);
     needed[64..68].fill(0);
+    tell_lab(&mut needed);
     let options =
         ParsingOptions { max_profile_size: LARGEST + 1, max_allowed_trc_size: 1 << 16, ..ParsingOptions::default() };
     ColorProfile::new_from_slice_with_options(&needed, options)
         .map_err(|error| format!("cannot be read: {error}").into())
+}
+
+/// Gives a profile the version that moxcms tells the encoding of a table's Lab by.
+///
+/// It is the table's type that tells: [ICC] 10.10 has lut16Type keep the encoding of version 2 in profiles of version 4,
+/// and 10.11 gives lut8Type one that, as a fraction, is that of version 4.
+pub(in super::super) fn tell_lab(icc: &mut [u8]) {
+    // In the order in which they are looked for.
+    let table = [b"A2B1", b"A2B0", b"A2B2"].into_iter().find_map(|name| tags(icc).find(|tag| tag[..4] == *name));
+    let kind = table.and_then(range).and_then(|range| icc.get(range.start..)?.first_chunk::<4>());
+    match kind {
+        Some(b"mft2") => icc[8..12].copy_from_slice(&[2, 0x40, 0, 0]),
+        Some(b"mft1") => icc[8..12].copy_from_slice(&[4, 0x40, 0, 0]),
+        _ => {}
+    }
 }
 
 /// The colour space that a profile is for, in words.

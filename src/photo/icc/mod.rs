@@ -15,7 +15,7 @@ use super::transfer::Curve;
 use super::{ReadOptions, Reason};
 use tables::Tables;
 
-pub(super) use head::LARGEST;
+pub(super) use head::{LARGEST, tell_lab};
 pub(super) use written::srgb_profile;
 
 /// The way from an ICC profile to linear light.

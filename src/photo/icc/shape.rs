@@ -91,7 +91,9 @@ pub fn curve(trc: &ToneReprCurve) -> Result<Curve, Reason> {
         }
     };
     let steps = (0..=64).map(|k| curve.light(f64::from(k) / 64.0));
-    if steps.clone().any(|light| !(-1.0..=100.0).contains(&light)) || steps.clone().all(|light| light <= 0.0) {
+    // Gamma 0 makes all codes white.
+    let flat = curve.light(0.0) == curve.light(1.0);
+    if flat || steps.clone().any(|light| !(-1.0..=100.0).contains(&light)) || steps.clone().all(|light| light <= 0.0) {
         return Err("has a curve that is none".into());
     }
     Ok(curve.recognised())

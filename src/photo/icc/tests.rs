@@ -113,6 +113,7 @@ fn what_cannot_be_read_is_srgb_with_a_note() {
         (lacking(b"rTRC"), "lacks a curve"),
         (lacking(b"gXYZ"), "lacks a primary"),
         (vec![0; LARGEST + 1], "more than"),
+        (with_curve(ColorProfile::new_srgb(), ToneReprCurve::Lut(vec![0])).encode().unwrap(), "a curve that is none"),
     ];
     for (icc, why) in cases {
         let mut notes = Vec::new();
@@ -182,5 +183,45 @@ fn profiles_of_tables_alone_are_honoured() {
         // In f64: gamma 461/256, ROMM's primaries, Bradford.
         close(light[2], [-0.517_055, 0.353_111, 1.117_525], 1.5e-3);
         close(light[3], [2.034_37, -0.228_83, -0.008_56], 1.5e-3);
+    }
+}
+
+/// A table of black and white alone from device to PCS Lab, [ICC] 10.10 and 10.11: of 16 bits where `wide`, else of 8.
+fn of_lab(wide: bool, version: u8) -> Vec<u8> {
+    let one = 0x1_0000_u32.to_be_bytes();
+    let unit = (0..9).flat_map(|k| if k % 4 == 0 { one } else { [0; 4] });
+    let kind = if wide { b"mft2" } else { b"mft1" };
+    let mut table: Vec<u8> = kind.iter().copied().chain([0, 0, 0, 0, 3, 3, 2, 0]).chain(unit).collect();
+    let curves = match wide {
+        true => [0_u16, 65535].map(u16::to_be_bytes).concat().repeat(3),
+        false => (0..=255).collect::<Vec<u8>>().repeat(3),
+    };
+    if wide {
+        table.extend([0, 2, 0, 2]);
+    }
+    table.extend(&curves);
+    for corner in 0..8 {
+        let white = corner == 7;
+        match wide {
+            true => table.extend([if white { 0xff00 } else { 0 }, 0x8000, 0x8000].map(u16::to_be_bytes).concat()),
+            false => table.extend([if white { 255 } else { 0 }, 128, 128]),
+        }
+    }
+    table.extend(&curves);
+    let mut profile = ColorProfile::new_srgb().encode().unwrap()[..128].to_vec();
+    profile[8] = version;
+    profile[20..24].copy_from_slice(b"Lab ");
+    let entry = [b"A2B0".as_slice(), &144_u32.to_be_bytes(), &(table.len() as u32).to_be_bytes()].concat();
+    profile.extend([1_u32.to_be_bytes().to_vec(), entry, table].concat());
+    profile
+}
+
+#[test]
+fn lab_of_tables_is_encoded_by_their_type_and_not_by_the_profiles_version() {
+    for (wide, version) in [(true, 2), (true, 4), (false, 2), (false, 4)] {
+        let profile = Profile::new(&of_lab(wide, version), false).unwrap().unwrap();
+        let light = profile.to_light(&[[1.0; 3], [0.0; 3]]).unwrap();
+        close(light[0], [1.0; 3], 1e-3);
+        close(light[1], [0.0; 3], 1e-5);
     }
 }

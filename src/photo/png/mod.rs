@@ -53,20 +53,26 @@ pub(super) fn read(mut reader: impl BufRead + Seek, options: &ReadOptions) -> Re
     let mut photo = if depth == BitDepth::Sixteen {
         let mut samples = zeroed::<u16>(size / 2)?;
         reader.next_frame(bytemuck::cast_slice_mut(&mut samples))?;
-        let turn = orientation(reader.info());
+        let turn = orientation(&mut reader);
         samples.iter_mut().for_each(|code| *code = u16::from_be(*code));
         Raster { width, height, channels, samples, planar: false }.into_photo(Format::Png, alpha, &encoding, turn)?
     } else {
         let mut samples = zeroed::<u8>(size)?;
         reader.next_frame(&mut samples)?;
-        let turn = orientation(reader.info());
+        let turn = orientation(&mut reader);
         Raster { width, height, channels, samples, planar: false }.into_photo(Format::Png, alpha, &encoding, turn)?
     };
     photo.source.notes.append(&mut notes);
     Ok(photo)
 }
 
-fn orientation(info: &Info<'_>) -> Orientation {
+/// What Exif says, which may stand behind the picture: third edition, 5.6.
+fn orientation(reader: &mut png::Reader<impl BufRead + Seek>) -> Orientation {
+    if reader.info().exif_metadata.is_none() && reader.info().animation_control.is_none() {
+        // What is wrong behind the picture does it no harm.
+        let _ = reader.finish();
+    }
+    let info = reader.info();
     info.exif_metadata.as_deref().and_then(Orientation::from_exif_chunk).unwrap_or(Orientation::NoTransforms)
 }
 
@@ -136,6 +142,27 @@ pub(super) fn write<T: Code>(writer: impl Write, photo: &Photo, look: Look) -> R
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn exif_turns_the_picture_from_before_and_from_behind_it() {
+        // Big-endian, one entry: orientation 6, a quarter turn clockwise.
+        let exif = b"eXIfMM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\x06\0\0\0\0\0\0";
+        let mut crc = flate2::Crc::new();
+        crc.update(exif);
+        let length = (exif.len() as u32 - 4).to_be_bytes();
+        let chunk = [&length, exif.as_slice(), &crc.sum().to_be_bytes()].concat();
+        for name in [b"IDAT", b"IEND"] {
+            let mut file = Vec::new();
+            let mut encoder = png::Encoder::new(&mut file, 2, 1);
+            encoder.set_color(ColorType::Grayscale);
+            encoder.write_header().unwrap().write_image_data(&[0, 255]).unwrap();
+            let at = file.windows(4).position(|word| word == name).unwrap() - 4;
+            file.splice(at..at, chunk.iter().copied());
+            let photo = super::read(std::io::Cursor::new(file), &ReadOptions::default()).unwrap();
+            assert_eq!((photo.width(), photo.height()), (1, 2), "{}", String::from_utf8_lossy(name));
+            assert_eq!((photo.pixels[0][0], photo.pixels[1][0]), (0.0, 1.0));
+        }
+    }
 
     #[test]
     fn code_points_that_are_unknown_are_passed_over_with_a_note() {

@@ -19,6 +19,8 @@ pub struct Header {
     /// Whether the pixels are CIE XYZ.
     pub xyz: bool,
     pub primaries: Option<Primaries>,
+    /// Whether its PRIMARIES span no colour space.
+    pub lost_primaries: bool,
     /// Height of a pixel over its width.
     aspect: f64,
     /// In which order the pixels stand.
@@ -45,15 +47,26 @@ impl Header {
     /// Where there is no header, or one of another kind of file, or of no end.
     pub fn read(mut reader: impl BufRead) -> Result<Self, Reason> {
         let order = Order { width: 0, height: 0, columns: false, from_right: false, from_bottom: false };
-        let mut header =
-            Self { lines: Vec::new(), exposure: [1.0; 3], xyz: false, primaries: None, aspect: 1.0, order };
+        let mut header = Self {
+            lines: Vec::new(),
+            exposure: [1.0; 3],
+            xyz: false,
+            primaries: None,
+            lost_primaries: false,
+            aspect: 1.0,
+            order,
+        };
         let mut left = LONGEST;
         loop {
             let mut line = Vec::new();
             left -= reader.by_ref().take(left).read_until(b'\n', &mut line)? as u64;
             if line.pop() != Some(b'\n') {
-                let why = if left == 0 { "its header does not end" } else { "the file is cut short in its header" };
-                return Err(why.into());
+                return Err(match left {
+                    0 => "its header does not end".into(),
+                    _ => {
+                        "the file is cut short in its header, or lacks the line of its size, like -Y 480 +X 640".into()
+                    }
+                });
             }
             line.pop_if(|last| *last == b'\r');
             // Some writers leave the blank line out.
@@ -92,7 +105,8 @@ impl Header {
                     blue: point(&n, 4),
                     white: point(&n, 6),
                 };
-                self.primaries = numbers(8).map(of);
+                self.primaries = numbers(8).map(of).and_then(Primaries::sound);
+                self.lost_primaries = self.primaries.is_none();
             }
             "PIXASPECT" => self.aspect *= numbers(1).map_or(1.0, |n| if n[0] > 0.0 { n[0] } else { 1.0 }),
             _ => {

@@ -50,8 +50,13 @@ pub(super) fn read(mut reader: impl BufRead + Seek, options: &ReadOptions) -> Re
             *pixel = [rgb[0], rgb[1], rgb[2], 1.0];
         }
     });
+    let mut notes = Vec::new();
+    if header.lost_primaries && !header.xyz && options.primaries.is_none() {
+        notes.push("its PRIMARIES span no colour space: its colours are taken as Rec. 709".to_owned());
+    }
     let source = Source {
         format: Some(Format::Radiance),
+        notes,
         depth: Depth::Float,
         primaries: header.primaries.filter(|_| !header.xyz).and_then(Primaries::other_than_rec709),
         pixel_aspect: header.pixel_aspect(),

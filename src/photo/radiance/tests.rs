@@ -120,6 +120,17 @@ fn a_header_is_kept_and_its_primaries_honoured() {
 }
 
 #[test]
+fn primaries_that_are_none_are_told() {
+    for value in ["0 0 0 0 0 0 0 0", "0.64 0.33", "a b c d e f g h", "nan 1 2 3 4 5 6 7"] {
+        let photo = photo(file(&format!("PRIMARIES={value}\n"), "-Y 2 +X 3", "\n", &UPRIGHT));
+        assert_eq!(photo.source.primaries, None, "{value}");
+        assert!(photo.source.notes.len() == 1 && photo.source.notes[0].contains("PRIMARIES"), "{value}");
+    }
+    let error = read(Cursor::new(file("", "-Y 2 X 3", "\n", &UPRIGHT)), &ReadOptions::default()).unwrap_err();
+    assert!(error.to_string().contains("lacks the line of its size"), "{error}");
+}
+
+#[test]
 fn xyz_becomes_rec709() {
     // By the matrix that IEC 61966-2-1 prints, of XYZ (3/8, 2/8, 255/256).
     let header = "FORMAT=32-bit_rle_xyze\n";

@@ -7,7 +7,7 @@ use moxcms::{ColorProfile, DataColorSpace, Layout, RenderingIntent, TransformExe
 use rayon::prelude::*;
 
 use super::super::transfer::Curve;
-use super::super::{Primaries, Reason};
+use super::super::{Primaries, Reason, icc};
 
 /// Pixels that are converted at a time.
 const CHUNK: usize = 1 << 12;
@@ -35,7 +35,9 @@ impl Cmyk {
     }
 
     fn by_profile(icc: &[u8]) -> Result<Self, Reason> {
-        let profile = ColorProfile::new_from_slice(icc)?;
+        let mut icc = icc.to_vec();
+        icc::tell_lab(&mut icc);
+        let profile = ColorProfile::new_from_slice(&icc)?;
         if profile.color_space != DataColorSpace::Cmyk {
             return Err("it is of another colour space".into());
         }
@@ -144,9 +146,8 @@ pub(super) fn lab_to_light<C: Copy + Send + Sync>(
     share: impl Fn(C) -> f64 + Sync,
     signed: impl Fn(C) -> f64 + Sync,
 ) -> Vec<f32> {
-    let d50 = Primaries { white: DVec2::new(0.3457, 0.3585), ..Primaries::XYZ };
-    // From XYZ over that of white.
-    let matrix = d50.to_rec709();
+    let d50 = DVec2::new(0.3457, 0.3585);
+    let matrix = Primaries::relative_xyz_to_rec709(d50);
     let inverse = |t: f64| if t > 6.0 / 29.0 { t.powi(3) } else { 3.0 * (6.0_f64 / 29.0).powi(2) * (t - 4.0 / 29.0) };
     let light = |pixel: &[C]| {
         let l = (100.0 * share(pixel[0]) + 16.0) / 116.0;

@@ -172,10 +172,12 @@ fn depth(layout: &Layout) -> Depth {
 fn by_palette(codes: Codes, layout: &Layout, meaning: Meaning) -> Result<Photo, Reason> {
     let count = 1 << layout.bits;
     let palette = &meaning.palette;
-    let colour = |index: usize| [palette[index], palette[count + index], palette[2 * count + index]];
-    // Old writers put 8 bits into the lower byte.
+    // Old writers put 8 bits into the lower byte, and Pillow and others into the upper one alone.
     let small = palette.iter().all(|&value| value < 256);
-    let eight = small || palette.iter().all(|&value| value >> 8 == value & 0xff);
+    let upper = palette.iter().all(|&value| value & 0xff == 0);
+    let eight = small || upper || palette.iter().all(|&value| value >> 8 == value & 0xff);
+    let shift = if eight && !small { 8 } else { 0 };
+    let colour = |index: usize| [index, count + index, 2 * count + index].map(|at| palette[at] >> shift);
     let indices: Vec<u16> = match codes {
         Codes::U8(codes) => codes.into_iter().map(u16::from).collect(),
         Codes::U16(codes) => codes,
@@ -251,7 +253,7 @@ fn by_values(codes: Codes, layout: &Layout, mut meaning: Meaning) -> Result<Phot
     }
     let integers = layout.kind != Kind::Float;
     let plain = matches!(layout.colour, Colour::Grey | Colour::GreyInverted | Colour::Rgb);
-    let associated = layout.alpha == Alpha::Premultiplied && plain;
+    let associated = layout.alpha == Alpha::Premultiplied && (plain || layout.colour == Colour::Cmyk);
     if associated && integers {
         values.par_chunks_exact_mut(kept).for_each(divide_by_alpha);
     }

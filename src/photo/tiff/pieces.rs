@@ -103,7 +103,7 @@ fn pieces(layout: &Layout, length: u64) -> Result<Vec<Piece>, Reason> {
         let rows = if grid.tiled { grid.size.1 } else { grid.size.1.min(layout.height - at.1) };
         let unpacked = unpacked_bytes(layout, grid.size.0, rows)?;
         let bytes = match bytes {
-            0 if offset == 0 => return Err(format!("the file is cut short: {} is missing", grid.name(index)).into()),
+            _ if offset == 0 => return Err(format!("the file is cut short: {} is missing", grid.name(index)).into()),
             0 if layout.compression == Compression::None => unpacked,
             0 => length.saturating_sub(offset),
             _ => bytes,

@@ -61,7 +61,7 @@ pub(super) fn colour(code: u32, to_rec709: &DMat3) -> [f32; 3] {
 
 /// From XYZ with equal energy as white, which LogLuv's is.
 pub(super) fn to_rec709() -> DMat3 {
-    Primaries::XYZ.to_rec709()
+    Primaries::relative_xyz_to_rec709(Primaries::XYZ.white)
 }
 
 #[cfg(test)]

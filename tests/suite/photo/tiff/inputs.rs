@@ -104,10 +104,21 @@ fn compressions_planes_and_orders_of_bits_are_read() {
 
 #[test]
 fn palettes_inks_and_differences_become_colours() {
-    check("palette", &read("palette-4"), 1e-6, |x, y| {
-        let index = ((3 * x + 5 * y) % 16) as f64;
-        [index * 17.0, 255.0 - index * 17.0, 51.0].map(|code| srgb_light(code / 255.0))
-    });
+    // Pillow leaves the lower bytes of its palettes 0.
+    for name in ["palette-4", "palette-upper-bytes"] {
+        check(name, &read(name), 1e-6, |x, y| {
+            let index = ((3 * x + 5 * y) % 16) as f64;
+            [index * 17.0, 255.0 - index * 17.0, 51.0].map(|code| srgb_light(code / 255.0))
+        });
+    }
+    // Inks (0.5, 0, 1, 0) under alpha 128, any under 0, and (1, 0, 0, 0.2) under 255.
+    let photo = read("cmyk-associated-alpha");
+    assert_eq!(photo.source.alpha, Alpha::Premultiplied);
+    let alpha = 128.0 / 255.0;
+    let want = [[0.214_041 * alpha, alpha, 0.0], [0.0; 3], [0.0, 0.603_827, 0.603_827]];
+    for (pixel, want) in photo.pixels.iter().zip(want) {
+        assert!((0..3).all(|c| (pixel[c] - want[c]).abs() < 1e-6), "{pixel:?} for {want:?}");
+    }
     let photo = read("cmyk");
     let code = |c: usize, x: usize, y: usize| (value(c, x, y) * 255.0).round() / 255.0;
     check("cmyk", &photo, 1e-6, |x, y| [0, 1, 2].map(|c| srgb_light((1.0 - code(c, x, y)) * (1.0 - code(3, x, y)))));
