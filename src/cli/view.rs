@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::BackendChoice;
+use super::reading::ReadArgs;
 use crate::gpu::Device;
 use crate::look::{Look, LookLens};
 use crate::scene::presets::DEFAULT_PRESET;
@@ -27,6 +28,9 @@ pub struct Args {
     /// The look that photos are opened with, as a scene file; see docs/scenes.md
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
+
+    #[command(flatten)]
+    reading: ReadArgs,
 
     /// Play a script without a window; see src/viewer/replay.rs
     #[arg(long, value_name = "FILE", hide = true, requires = "script_output")]
@@ -60,8 +64,8 @@ pub fn run(args: &Args) -> Result<()> {
     };
     if let (Some(script), Some(output)) = (&args.script, &args.script_output) {
         let device = Device::open(args.backend.backends())?;
-        return replay::play(&device, &args.photos, look, script, output);
+        return replay::play(&device, &args.photos, look, args.reading.options(), script, output);
     }
     let harness = Harness { status: args.status.clone(), lose_after: args.lose_after };
-    viewer::run(&args.photos, look, harness)
+    viewer::run(&args.photos, look, args.reading.options(), harness)
 }

@@ -3,7 +3,7 @@
 //! A firefly is one pixel that outshines each of its eight neighbours by far: a path that a renderer's sampling met once,
 //! or a hot pixel of a sensor. What a lens has drawn is never like that, since it spreads a point over several pixels;
 //! nor is a small light in a picture made smaller, as long as its pixels are means. A pixel that has nearly all of the
-//! photo's light is what the photo shows, and none.
+//! photo's light is what the photo shows, and none, unless something else stands out from the rest.
 
 use std::ops::Range;
 
@@ -13,6 +13,9 @@ use super::emission::Emission;
 
 /// A pixel with so many times the light of all that are no fireflies is a lamp in the dark.
 const ALL_THE_LIGHT: f64 = 100.0;
+
+/// What is so many times as bright as the mean of these is a lamp, too, beside which no other is to be looked for.
+const STANDS_OUT: f64 = 16.0;
 
 /// A photo's pixels, row by row.
 pub(super) struct Lit<'a> {
@@ -41,8 +44,10 @@ impl<'a> Lit<'a> {
         let mut lit = Self { pixels, width: width.max(1), emission, fireflies: Vec::new(), peak: 0.0 };
         let limit = if limit > 0.0 { limit as f32 } else { f32::INFINITY };
         let bands: Vec<Seen> = lit.bands().map(|rows| lit.see(rows, limit)).collect();
-        let dark = bands.iter().map(|seen| seen.sum).sum::<f64>() * ALL_THE_LIGHT;
+        let sum: f64 = bands.iter().map(|seen| seen.sum).sum();
         lit.peak = bands.iter().fold(0.0, |peak, seen| seen.peak.max(peak));
+        let has_lamp = f64::from(lit.peak) * pixels.len() as f64 > STANDS_OUT * sum;
+        let dark = if has_lamp { f64::INFINITY } else { sum * ALL_THE_LIGHT };
         for &(index, luminance) in bands.iter().flat_map(|seen| &seen.alone) {
             if f64::from(luminance) > dark {
                 lit.peak = lit.peak.max(luminance);
@@ -172,5 +177,15 @@ mod tests {
         let mut seen = Vec::new();
         lit.each(3, |_, luminance| seen.push(luminance));
         assert_eq!((seen, lit.peak()), (vec![0.0; 10], 0.3));
+    }
+
+    #[test]
+    fn a_firefly_in_the_dark_does_not_outdo_a_lamp() {
+        // A lamp of four pixels, which have a thousandth of the firefly's light.
+        let mut luminances = [0.01; 400];
+        luminances[37] = 5e4;
+        assert_eq!(fireflies(20, &luminances), []);
+        [200, 201, 220, 221].iter().for_each(|&lamp| luminances[lamp] = 12.5);
+        assert_eq!(fireflies(20, &luminances), [(17, 1)]);
     }
 }

@@ -26,6 +26,7 @@ use super::timings::Timings;
 use super::{panels, viewing};
 use crate::gpu::paint::Painter;
 use crate::gpu::{Device, Screen};
+use crate::photo::ReadOptions;
 use crate::plan::Plan;
 use crate::printable::printable;
 use crate::scene::{FindOptions, Found};
@@ -118,6 +119,11 @@ impl App {
             cost: 0.0,
             devices: 1,
         })
+    }
+
+    /// Has photos read by these options from now on.
+    pub fn read_by(&mut self, options: ReadOptions) {
+        self.loader.options = options;
     }
 
     /// Begins to open a photo; it is shown when it has been read.
@@ -263,6 +269,9 @@ impl App {
                 (Some(number), read) => self.wake(number, read),
                 (None, Ok(document)) => {
                     self.remember_photo(&document.path);
+                    for note in &document.photo.source.notes {
+                        self.notice(format!("{}: {note}", document.path.display()));
+                    }
                     self.add(document);
                     // While many are read, those before are let go of as the next come in.
                     self.keep_within_budget();

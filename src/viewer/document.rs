@@ -11,7 +11,7 @@ use super::model::{History, Look, LookLens};
 use super::viewing::Viewing;
 use crate::Result;
 use crate::frame::{Frame, Window};
-use crate::photo::{self, Photo};
+use crate::photo::{self, Photo, ReadOptions};
 use crate::printable;
 use crate::scene::{FindOptions, Found, Ghost, Light};
 
@@ -69,9 +69,9 @@ impl Document {
     /// Reads a photo and finds its lights.
     ///
     /// # Errors
-    /// Those of [`photo::read`].
-    pub fn read(path: &Path, look: Look) -> Result<Self> {
-        Ok(Self::new(path, photo::read(path)?, look))
+    /// Those of [`photo::read_with`].
+    pub fn read(path: &Path, options: &ReadOptions, look: Look) -> Result<Self> {
+        Ok(Self::new(path, photo::read_with(path, options)?, look))
     }
 
     /// An open photo.

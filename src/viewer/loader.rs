@@ -7,6 +7,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use super::document::Document;
 use super::model::Look;
+use crate::photo::ReadOptions;
 use crate::{Error, Result, panics};
 
 /// Tells the event loop that something has come in.
@@ -17,6 +18,8 @@ const AT_A_TIME: usize = 2;
 
 /// Reads files in the background, in the order in which they were asked for.
 pub struct Loader {
+    /// How they are read.
+    pub options: ReadOptions,
     sender: Sender<(u64, Result<Document>)>,
     receiver: Receiver<(u64, Result<Document>)>,
     wake: Wake,
@@ -50,19 +53,27 @@ impl Loader {
     /// A loader that calls `wake` whenever a file is done.
     pub fn new(wake: Wake) -> Self {
         let (sender, receiver) = channel();
-        Self { sender, receiver, wake, under_way: VecDeque::new(), running: 0, next: 0 }
+        Self {
+            options: ReadOptions::default(),
+            sender,
+            receiver,
+            wake,
+            under_way: VecDeque::new(),
+            running: 0,
+            next: 0,
+        }
     }
 
     /// Begins to read a photo.
     pub fn read(&mut self, path: PathBuf, look: Look) {
-        let file = path.clone();
-        self.ask(path, None, Box::new(move || Document::read(&file, look)));
+        let (file, options) = (path.clone(), self.options);
+        self.ask(path, None, Box::new(move || Document::read(&file, &options, look)));
     }
 
     /// Begins to read a photo again whose document let go of its pixels.
     pub fn wake(&mut self, number: u64, document: &Document) {
-        let (file, look) = (document.path.clone(), document.known_look());
-        self.ask(document.path.clone(), Some(number), Box::new(move || Document::read(&file, look)));
+        let (file, look, options) = (document.path.clone(), document.known_look(), self.options);
+        self.ask(document.path.clone(), Some(number), Box::new(move || Document::read(&file, &options, look)));
     }
 
     /// Whether a document's photo is being read again.

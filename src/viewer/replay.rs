@@ -19,6 +19,7 @@ use super::stage::Times;
 use super::status::Status;
 use crate::gpu::{Device, Screen};
 use crate::look::Look;
+use crate::photo::ReadOptions;
 use crate::{Error, Result, target};
 
 /// Seconds from a frame to the next.
@@ -123,7 +124,14 @@ pub fn read_script(path: &Path) -> Result<Vec<Step>> {
 /// # Errors
 /// [`Error::Script`] where a step cannot be done, [`Error::Write`] where the folder cannot be written to, and those of
 /// [`App::frame`].
-pub fn play(device: &Rc<Device>, photos: &[PathBuf], look: Look, script: &Path, output: &Path) -> Result<()> {
+pub fn play(
+    device: &Rc<Device>,
+    photos: &[PathBuf],
+    look: Look,
+    reading: ReadOptions,
+    script: &Path,
+    output: &Path,
+) -> Result<()> {
     let steps = read_script(script)?;
     fs::create_dir_all(output).map_err(|error| Error::write(output, error))?;
     let mut player = Player::new(device, look, [1280, 800])?;
@@ -131,6 +139,7 @@ pub fn play(device: &Rc<Device>, photos: &[PathBuf], look: Look, script: &Path, 
         path: script.to_owned(),
         reason: format!("step {}: {reason}", index + 1),
     };
+    player.app.read_by(reading);
     for path in photos {
         player.app.open(path.clone());
     }

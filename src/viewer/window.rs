@@ -16,6 +16,7 @@ use super::input;
 use super::model::{Look, State};
 use super::status::Status;
 use crate::gpu::{Device, Display, Screen, Surface, event_loop};
+use crate::photo::ReadOptions;
 use crate::{Error, Result, target};
 
 /// A frame that is due sooner than this goes on with something.
@@ -44,11 +45,18 @@ pub struct Harness {
 /// [`Error::NoDisplay`] and [`Error::NoContext`] before there is any window; [`Error::Gl`] where the driver fails later
 /// for good, [`Error::Write`] where the harness's file cannot be written. A photo that cannot be read is told of in the
 /// window.
-pub fn run(photos: &[PathBuf], look: Look, harness: Harness) -> Result<()> {
+pub fn run(photos: &[PathBuf], look: Look, reading: ReadOptions, harness: Harness) -> Result<()> {
     let event_loop = event_loop::<Wanted>()?;
     let display = Display::open(&event_loop)?;
     let mut viewer = Viewer {
-        waiting: Some(Start { display, photos: photos.to_vec(), look, harness, proxy: event_loop.create_proxy() }),
+        waiting: Some(Start {
+            display,
+            photos: photos.to_vec(),
+            look,
+            reading,
+            harness,
+            proxy: event_loop.create_proxy(),
+        }),
         open: None,
         failed: None,
     };
@@ -61,6 +69,7 @@ struct Start {
     display: Display,
     photos: Vec<PathBuf>,
     look: Look,
+    reading: ReadOptions,
     harness: Harness,
     proxy: EventLoopProxy<Wanted>,
 }
@@ -119,6 +128,7 @@ impl Start {
             let _ = proxy.send_event(Wanted);
         });
         let mut app = App::new(&device, self.look, wake)?;
+        app.read_by(self.reading);
         state.clone().into_iter().for_each(|state| app.remember(state));
         app.use_dialogs();
         self.photos.into_iter().for_each(|path| app.open(path));

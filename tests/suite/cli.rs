@@ -129,9 +129,12 @@ fn night() -> Photo {
     let (width, height) = (96, 64);
     let mut pixels: Vec<[f32; 4]> =
         (0..width * height).map(|k| [0.02, 0.02 + 1e-4 * (k % width) as f32, 0.03, 1.0]).collect();
-    for (column, row, light) in
-        [(70, 12, [900.0, 700.0, 400.0]), (71, 12, [800.0, 650.0, 300.0]), (20, 50, [60.0, 90.0, 200.0])]
-    {
+    for (column, row, light) in [
+        (70, 12, [900.0, 700.0, 400.0]),
+        (71, 12, [800.0, 650.0, 300.0]),
+        (20, 50, [60.0, 90.0, 200.0]),
+        (21, 50, [0.6, 0.9, 2.0]),
+    ] {
         pixels[row * width + column] = [light[0], light[1], light[2], 1.0];
     }
     Photo::new(width as u32, height as u32, pixels)

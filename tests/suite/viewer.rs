@@ -13,7 +13,7 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2, RawInput, Rect, Vec2, pos
 use glam::DVec2;
 use vglare::gpu::{Backend, Device, Screen};
 use vglare::look::Look;
-use vglare::photo::{self, Photo, WriteOptions};
+use vglare::photo::{self, Missing, Photo, ReadOptions, WriteOptions};
 use vglare::plan::Evaluator;
 use vglare::scene::Goal;
 use vglare::viewer::{App, Document, Shows};
@@ -255,6 +255,22 @@ fn a_bad_file_is_told_of_and_the_picture_stays() {
     assert!(session.app.notices().len() == 1 && session.app.notices()[0].contains("missing.exr"));
     let lit = session.at(session.document().lights()[0].position);
     assert!(session.brightness(lit) > 600);
+}
+
+#[test]
+fn what_is_said_of_how_a_photo_was_read_is_said_here_too() {
+    let unfinished = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/inputs/exr-unfinished-render.exr");
+    let mut session = Session::new();
+    for (missing, words, is_open) in
+        [(Missing::Refuse, "--missing zero", false), (Missing::Zero, "their pixels are 0", true)]
+    {
+        session.app.read_by(ReadOptions { missing, ..ReadOptions::default() });
+        session.app.open(unfinished.clone());
+        session.wait(|app| !app.is_reading());
+        let last = session.app.notices().last().unwrap();
+        assert!(last.contains("exr-unfinished-render.exr: ") && last.contains(words), "{last}");
+        assert_eq!(session.app.document().is_some(), is_open);
+    }
 }
 
 #[test]

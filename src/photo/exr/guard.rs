@@ -45,6 +45,9 @@ pub(super) fn check(header: &Header, size: Vec2<usize>, packed: &[u8], expected:
         return Err("the file is damaged: a block is empty".into());
     }
     let memory = match header.compression {
+        Compression::HTJ2K32 | Compression::HTJ2K256 => {
+            return Err("it is compressed by HTJ2K, which vglare does not read".into());
+        }
         // What did not shrink stands as it is.
         _ if packed.len() == expected => expected,
         Compression::DWAA(_) | Compression::DWAB(_) => expected.saturating_mul(DWA_WORKING_MEMORY),

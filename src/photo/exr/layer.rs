@@ -205,6 +205,11 @@ mod tests {
             assert_eq!((choice.layer.part(), choice.name.as_deref()), (1, Some(want)));
             assert_eq!(choice.notes, [""; 0]);
         }
+        let twice = ["V.AO", "V.Combined"].map(|name| {
+            let channels = ["B", "G", "R"].map(|channel| format!("{name}.{channel}"));
+            part(Some(name), &channels.each_ref().map(String::as_str))
+        });
+        assert_eq!(choose(&twice).unwrap().name.as_deref(), Some("part V.Combined"));
         let unnamed = choose(&[part(Some("rgba"), RGB), part(None, RGB)]).unwrap();
         assert_eq!(unnamed.layer.part(), 1);
         let tie = choose(&[part(Some("a"), RGB), part(Some("b"), RGB)]).unwrap();

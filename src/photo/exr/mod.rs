@@ -50,10 +50,10 @@ pub(super) struct Rest {
     layer: Layer,
     /// For each member of the layer, the channels that are carried.
     planes: Vec<Planes>,
-    /// The other parts' chunks, each with its index within its part; also the picture's, if it is subsampled.
+    /// The other parts' chunks, each with its index within its part; also the picture's, if they are kept.
     chunks: Vec<(usize, Chunk)>,
-    /// Whether some of the picture's channels are subsampled, and its chunks kept.
-    is_subsampled: bool,
+    /// Whether the picture's chunks are kept: some of its channels are subsampled, or luminance and chroma.
+    is_kept: bool,
     /// The shares of red, green and blue in luminance that chroma was read with.
     weights: [f64; 3],
 }
@@ -79,7 +79,7 @@ impl Rest {
             layer: Layer { members: vec![member], colours: Colours::Rgb },
             planes: vec![vec![None; 3]],
             chunks: Vec::new(),
-            is_subsampled: false,
+            is_kept: false,
             weights: self.weights,
         }
     }
@@ -98,6 +98,9 @@ fn explain(error: exr::error::Error) -> Reason {
         exr::error::Error::Io(error) => error.into(),
         exr::error::Error::Invalid(text) if text.contains("missing bytes") => "the file is cut short".into(),
         exr::error::Error::Invalid(text) => format!("the file is damaged: {text}").into(),
+        exr::error::Error::NotSupported(text) if text == "unknown compression method" => {
+            "it is compressed in a way that vglare does not know".into()
+        }
         exr::error::Error::NotSupported(text) => format!("it needs what vglare cannot do: {text}").into(),
         aborted @ exr::error::Error::Aborted => aborted.to_string().into(),
     }

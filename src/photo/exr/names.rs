@@ -53,7 +53,8 @@ impl Names {
         let part = self.part.as_deref().filter(|_| headers.len() > 1);
         let layer = self.prefix.trim_end_matches('.');
         match (part, layer) {
-            (Some(part), "") => Some(format!("part {part}")),
+            // Some writers repeat the part's name in its channels'.
+            (Some(part), layer) if layer.is_empty() || layer == part => Some(format!("part {part}")),
             (Some(part), layer) => Some(format!("part {part}, {layer}")),
             (None, "") => self.view.as_ref().map(|view| format!("view {view}")),
             (None, layer) => Some(layer.to_owned()),

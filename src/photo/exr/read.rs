@@ -45,6 +45,7 @@ pub fn read(reader: impl BufRead + Seek, options: &ReadOptions) -> Result<Photo,
         notes.push(gaps.answer(options.missing)?);
     }
     let is_subsampled = layer.members.iter().any(|member| !is_plain(&headers[member.part].channels));
+    let is_kept = !has_gaps && (is_subsampled || layer.colours == Colours::LumaChroma);
     let mut chunks = Vec::new();
     let batch = BLOCKS_A_THREAD * rayon::current_num_threads();
     loop {
@@ -56,7 +57,7 @@ pub fn read(reader: impl BufRead + Seek, options: &ReadOptions) -> Result<Photo,
         let (main, others): (Vec<_>, Vec<_>) =
             read.into_iter().partition(|block| layer.member(block.chunk.layer_index).is_some());
         chunks.extend(others.into_iter().map(|block| (block.index, block.chunk)));
-        if is_subsampled && !has_gaps {
+        if is_kept {
             chunks.extend(main.iter().map(|block| (block.index, block.chunk.clone())));
         }
         insert(&mut picture, &layer, &headers, main.into_iter().map(|block| (block.tile, block.chunk)).collect())?;
@@ -68,7 +69,7 @@ pub fn read(reader: impl BufRead + Seek, options: &ReadOptions) -> Result<Photo,
     let is_main = |part| layer.member(part).is_some();
     let levels = |(part, header)| if is_main(part) { largest_level(header) } else { header };
     let headers = headers.into_iter().enumerate().map(levels).collect();
-    let rest = Rest { headers, layer, planes, chunks, weights, is_subsampled: is_subsampled && !has_gaps };
+    let rest = Rest { headers, layer, planes, chunks, weights, is_kept };
     Ok(Photo { frame, pixels, source: Source { exr: Some(Arc::new(rest)), picture: name, notes, ..source } })
 }
 

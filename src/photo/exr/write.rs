@@ -56,7 +56,7 @@ pub fn write(writer: impl Write + Seek, photo: &Photo, depth: Depth) -> Result<(
     let mut headers = rest.headers.clone();
     check_window(photo, &headers[rest.layer.part()])?;
     let is_main = |chunk: &Chunk| rest.layer.member(chunk.layer_index).is_some();
-    if rest.is_subsampled && depth == photo.source.depth && is_unchanged(photo, rest)? {
+    if rest.is_kept && depth == photo.source.depth && is_unchanged(photo, rest)? {
         let chunks: Vec<_> = rest.chunks.iter().collect();
         return Container::new(writer, headers)?.finish(&[], &chunks);
     }
@@ -78,7 +78,7 @@ pub fn write(writer: impl Write + Seek, photo: &Photo, depth: Depth) -> Result<(
     Container::new(writer, headers)?.finish(&mains, &chunks)
 }
 
-/// Whether the pixels are still those of the chunks that a subsampled picture came in.
+/// Whether the pixels are still those of the chunks that the picture came in.
 fn is_unchanged(photo: &Photo, rest: &Rest) -> Result<bool, Reason> {
     let mut picture = Picture::new(&rest.layer, &rest.headers)?;
     let of_picture = rest.chunks.iter().filter(|(_, chunk)| rest.layer.member(chunk.layer_index).is_some());

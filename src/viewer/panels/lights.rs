@@ -187,6 +187,11 @@ fn find(ui: &mut Ui, document: &mut Document) {
     let (regions, threshold) = (document.found.regions, control::brief(document.found.threshold));
     let noun = if regions == 1 { "region" } else { "regions" };
     control::hint(ui, format!("{regions} {noun} from {threshold} on{searching}"));
+    match document.found.fireflies {
+        0 => {}
+        1 => control::hint(ui, "1 firefly, which is no light"),
+        many => control::hint(ui, format!("{many} fireflies, which are no lights")),
+    }
 }
 
 /// The numbers of one light; each goes back to what it was when the light was selected.

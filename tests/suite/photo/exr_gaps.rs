@@ -163,6 +163,15 @@ fn deep_data_is_refused_by_name() {
 }
 
 #[test]
+fn compressions_of_newer_versions_are_refused_by_name() {
+    // Of OpenEXR 3.5.3's Python module.
+    let text = reason(&input("exr-htj2k.exr"));
+    assert!(text.ends_with("it is compressed by HTJ2K, which vglare does not read"), "{text}");
+    let text = reason(&input("exr-zstd.exr"));
+    assert!(text.ends_with("it is compressed in a way that vglare does not know"), "{text}");
+}
+
+#[test]
 fn sizes_are_checked_before_a_decoder_takes_memory() {
     let text = reason(&input("exr-dwa-counters.exr"));
     assert!(text.contains("counters of a DWA block"), "{text}");

@@ -57,3 +57,19 @@ fn an_unchanged_picture_goes_back_as_it_came_and_a_changed_one_in_full() {
         assert!(!bytes.windows(3).any(|name| name == b"RY\0"), "{kind}: chroma is left beside the colours");
     }
 }
+
+/// Written by hand as numpy's float32: R = 0.25 + x / 8, G = 0.5, B = 0.125 + y / 8 at 6 × 4, with a sample of each
+/// channel at each pixel.
+#[test]
+fn chroma_that_is_whole_goes_back_as_it_came_too() {
+    let folder = Folder::new();
+    let photo = photo::read(&input("exr-luminance-chroma-full.exr")).unwrap();
+    for (i, pixel) in photo.pixels.iter().enumerate() {
+        let want = [0.25 + (i % 6) as f32 / 8.0, 0.5, 0.125 + (i / 6) as f32 / 8.0, 1.0];
+        assert!(pixel.iter().zip(want).all(|(got, want)| (got - want).abs() < 1e-6), "{i}: {pixel:?}");
+    }
+    let again = folder.round_trip("again.exr", &photo);
+    assert!(bits(&again) == bits(&photo));
+    let bytes = fs::read(folder.path("again.exr")).unwrap();
+    assert!(bytes.windows(3).any(|name| name == b"RY\0"), "luminance and chroma have become colours");
+}
