@@ -123,7 +123,7 @@ fn a_damaged_file_is_a_warning_and_changes_nothing() {
 fn a_cache_that_cannot_be_written_is_an_error_before_anything_is_measured() {
     let place = Workplace::new();
     place.text("cache", "a file where the folder should be");
-    place.vglare(&["calibrate"]).failed(1, &["calibration.json"]);
+    place.vglare(&["calibrate"]).failed(1, &["cannot write", "cache: "]);
     place.vglare(&["calibrate", "--forget", "--dry-run"]).failed(2, &["--forget"]);
     place.vglare(&["calibrate", "--rounds", "0"]).failed(2, &["rounds"]);
 }
