@@ -106,5 +106,9 @@ fn pixels_that_are_not_square_are_told_in_summary_report_and_plan() {
     bytes[at..at + 4].copy_from_slice(&0.0f32.to_le_bytes());
     std::fs::write(place.path("in.exr"), bytes).unwrap();
     let ran = place.vglare(&["apply", "in.exr", "-o", "square.exr", "--scene", "scene.toml"]).succeeded();
-    assert!(ran.stderr().contains("its pixelAspectRatio, 0, makes no sense: its pixels are taken for square"), "{}", ran.stderr());
+    assert!(
+        ran.stderr().contains("its pixelAspectRatio, 0, makes no sense: its pixels are taken for square"),
+        "{}",
+        ran.stderr()
+    );
 }
