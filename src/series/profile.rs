@@ -322,7 +322,7 @@ impl Radial for Profile {
     /// ĝ has nothing faster than the radius in it, so that where many are asked for, few nodes hold all of them.
     fn transforms(&self, at: &[f64]) -> Vec<f64> {
         let last = at.iter().copied().fold(0.0, f64::max);
-        if self.looks_up() && NODES * self.radius() * last < 0.5 * at.len() as f64 {
+        if NODES * self.radius() * last < 0.5 * at.len() as f64 {
             return self.between_nodes(at, last);
         }
         at.par_iter().map(|&z| self.transform(z)).collect()
