@@ -43,7 +43,7 @@ pub struct SceneArgs {
 impl SceneArgs {
     /// The files that the scene is read from, those among them that others refer to.
     pub fn files(&self) -> Vec<PathBuf> {
-        let given = [&self.scene, &self.lens, &self.lights].into_iter().flatten();
+        let given = [&self.scene, &self.lens, &self.lights, &self.add_lights].into_iter().flatten();
         given.flat_map(|path| std::iter::once(path.clone()).chain(scene::referred(path))).collect()
     }
 

@@ -5,6 +5,7 @@ mod folder;
 use std::fmt::Write as _;
 
 use crate::gpu::Info;
+use crate::printable::printable;
 
 pub(crate) use folder::{INDEX, csv_text, numbers_csv, open, write_png};
 
@@ -85,14 +86,22 @@ pub(crate) fn unbroken(text: &str) -> String {
     out + rest
 }
 
-/// Text as it may stand in HTML.
+/// Text as it may stand in HTML, where what would act and not be seen is told by its number.
 pub(crate) fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    printable(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_would_act_on_a_page_is_shown() {
+        let name = "<b>&\"\u{1b}[2J\u{7}\u{9b}\u{202e}é.exr";
+        let expected = r"&lt;b&gt;&amp;&quot;\u{1b}[2J\u{7}\u{9b}\u{202e}é.exr";
+        assert_eq!(escaped(name), expected);
+        assert_eq!(shown(name), expected);
+    }
 
     #[test]
     fn numbers_with_exponents_are_not_broken() {

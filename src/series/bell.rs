@@ -162,6 +162,11 @@ pub trait Radial: Sync {
     /// ĝ(z) = 2π ∫ r g(r) J0(zr) dr, z in radians for each size.
     fn transform(&self, z: f64) -> f64;
 
+    /// [`Radial::transform`] at each of these z ≥ 0, as a table of coefficients asks for it.
+    fn transforms(&self, at: &[f64]) -> Vec<f64> {
+        at.par_iter().map(|&z| self.transform(z)).collect()
+    }
+
     /// An upper bound of how far the series is off at any point if it has all modes below `z`, on a lattice of modes
     /// whose cells have the half diagonal `cell`, in the same unit.
     fn beyond(&self, z: f64, cell: f64) -> f64;
@@ -185,12 +190,10 @@ impl Modes<'_> {
             Self::Radial(radial) => {
                 let turn = std::f64::consts::TAU * size;
                 let volume = size.element_product();
-                let coefficient = |(n, m)| {
-                    let z = (turn * DVec2::new(f64::from(n), f64::from(m))).length();
-                    [kappa(n, m) * volume * radial.transform(z), 0.0, 0.0, 0.0]
-                };
-                // A profile may have thousands of rows, and each mode asks all of them.
-                modes(counts).collect::<Vec<_>>().into_par_iter().map(coefficient).collect()
+                let frequency = |(n, m)| (turn * DVec2::new(f64::from(n), f64::from(m))).length();
+                let transforms = radial.transforms(&modes(counts).map(frequency).collect::<Vec<_>>());
+                let coefficient = |((n, m), transform)| [kappa(n, m) * volume * transform, 0.0, 0.0, 0.0];
+                modes(counts).zip(transforms).map(coefficient).collect()
             }
         }
     }

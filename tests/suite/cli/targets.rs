@@ -61,6 +61,7 @@ fn no_result_replaces_an_input_or_another_even_by_force() {
         (&["-o", "o.exr", "--report", "spot.csv", "--scene", "scene.toml"], &["--report", "spot.csv"]),
         (&["-o", "o.exr", "--report", "./lens.toml", "--lens", "lens.toml"], &["--report", "lens.toml"]),
         (&["-o", "o.exr", "--report", "lights.toml", "--lights", "lights.toml"], &["--report", "lights.toml"]),
+        (&["-o", "o.exr", "--report", "lights.toml", "--add-lights", "lights.toml"], &["--report", "lights.toml"]),
         (&["-o", "same.exr", "--glare", "./same.exr"], &["each", "same.exr"]),
         (&["-o", "same.exr", "--glare", "real/../same.exr"], &["each", "same.exr"]),
         (&["--report", "same.exr", "--glare", "same.exr"], &["each", "same.exr"]),
