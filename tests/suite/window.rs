@@ -23,7 +23,7 @@ fn opened(options: &[&str]) -> Desk {
     let photo = desk.path("lamp.exr");
     photo::write(&photo, &lamp(), &WriteOptions::default()).unwrap();
     desk.open(&photo, options);
-    desk.to_window(&["windowsize"], &["1260", "1080"]);
+    desk.to_window(&["windowsize"], &["1260", "1160"]);
     desk.rested();
     desk
 }
@@ -137,7 +137,7 @@ fn the_window_is_looked_at_made_small_hidden_and_closed() {
     desk.rested();
     assert!(desk.is_open(), "it ended while it was hidden");
     desk.to_window(&["windowmap"], &[]);
-    desk.to_window(&["windowsize"], &["1260", "1080"]);
+    desk.to_window(&["windowsize"], &["1260", "1160"]);
     desk.to_window(&["windowfocus"], &[]);
     desk.key("f");
     assert!(shows_the_lamp(&desk), "it comes back");
