@@ -1,11 +1,13 @@
 //! The error of a field that was rendered, measured against the direct sum in f64, at sample pixels or at all of them.
 
+use std::sync::Arc;
+
 use crate::compare::{Comparison, compare_in};
-use crate::frame::{Frame, Window};
+use crate::frame::Window;
 use crate::plan::Plan;
+use crate::problem::Problem;
 use crate::reference;
 use crate::renderer::Renderer;
-use crate::scene::Ghost;
 use crate::{Error, Result};
 
 /// Pixels that a certificate looks at, at least and at most.
@@ -48,27 +50,21 @@ pub struct Certificate {
 }
 
 impl Certificate {
-    /// Measures the renderer's field, which must be that of `ghosts` and `plan`.
+    /// Renders the plan's field, and measures it at sample pixels.
     ///
     /// # Errors
     /// [`Error::Gl`] where the driver refuses.
-    pub fn measure(renderer: &mut Renderer, ghosts: &[Ghost], plan: &Plan, frame: Frame, asked: f64) -> Result<Self> {
-        Ok(Samples::take(renderer, ghosts, plan, frame, asked)?.certify(ghosts))
+    pub fn measure(renderer: &mut Renderer, plan: &Plan) -> Result<Self> {
+        Ok(Samples::take(renderer, plan)?.certify())
     }
 
-    /// Measures the renderer's field, which must be that of `ghosts` and `plan`, at every pixel of the frame's window;
-    /// `advance` is told how many more are done.
+    /// Renders the plan's field, and measures it at every pixel of its window; `advance` is told how many more are done.
     ///
     /// # Errors
     /// [`Error::Gl`] where the driver refuses.
-    pub fn measure_all(
-        renderer: &mut Renderer,
-        ghosts: &[Ghost],
-        plan: &Plan,
-        frame: Frame,
-        asked: f64,
-        mut advance: impl FnMut(usize),
-    ) -> Result<Self> {
+    pub fn measure_all(renderer: &mut Renderer, plan: &Plan, mut advance: impl FnMut(usize)) -> Result<Self> {
+        let (ghosts, frame) = (plan.problem().ghosts(), plan.problem().frame());
+        renderer.set_scene(plan)?;
         let mut comparison = Comparison::in_units(plan.scale);
         // Where each tile's values begin among all of them.
         let mut tiles: Vec<(usize, Window)> = Vec::new();
@@ -87,7 +83,7 @@ impl Certificate {
         let difference = comparison.difference();
         let worst = tiles.iter().rev().find(|(first, _)| *first <= difference.worst.0);
         Ok(Self {
-            asked,
+            asked: plan.tolerance,
             predicted: plan.predicted.total(),
             measured: difference.relative,
             verify: Verify::Full,
@@ -112,29 +108,38 @@ impl Certificate {
 
 /// A renderer's field at sample pixels, not yet held against the truth: that needs no device, and may be done elsewhere.
 pub(crate) struct Samples {
+    problem: Arc<Problem>,
     pixels: Vec<[i32; 2]>,
     rendered: Vec<[f64; 3]>,
-    frame: Frame,
     unit: [f64; 3],
     asked: f64,
     predicted: f64,
 }
 
 impl Samples {
-    /// Looks the field up, which must be that of `ghosts` and `plan`.
+    /// Renders the plan's field, and looks it up.
     ///
     /// # Errors
     /// [`Error::Gl`] where the driver refuses.
-    pub fn take(renderer: &mut Renderer, ghosts: &[Ghost], plan: &Plan, frame: Frame, asked: f64) -> Result<Self> {
-        let pixels = sample_pixels(ghosts, plan, frame);
-        let rendered = renderer.probe(frame, &pixels)?;
-        Ok(Self { pixels, rendered, frame, unit: plan.scale, asked, predicted: plan.predicted.total() })
+    pub fn take(renderer: &mut Renderer, plan: &Plan) -> Result<Self> {
+        let problem = plan.problem().clone();
+        let pixels = sample_pixels(plan);
+        renderer.set_scene(plan)?;
+        let rendered = renderer.probe(problem.frame(), &pixels)?;
+        Ok(Self {
+            problem,
+            pixels,
+            rendered,
+            unit: plan.scale,
+            asked: plan.tolerance,
+            predicted: plan.predicted.total(),
+        })
     }
 
     /// Holds them against the direct sum of the same ghosts.
-    pub fn certify(&self, ghosts: &[Ghost]) -> Certificate {
-        let points: Vec<_> =
-            self.pixels.iter().map(|&[i, j]| self.frame.position(f64::from(i), f64::from(j))).collect();
+    pub fn certify(&self) -> Certificate {
+        let (ghosts, frame) = (self.problem.ghosts(), self.problem.frame());
+        let points: Vec<_> = self.pixels.iter().map(|&[i, j]| frame.position(f64::from(i), f64::from(j))).collect();
         // In the plan's own unit where that is larger: light that cancels, or that does not reach the picture, is nothing.
         let difference = compare_in(&reference::direct_at(ghosts, &points), &self.rendered, self.unit);
         Certificate {
@@ -157,7 +162,8 @@ fn place(tile: Window, index: usize) -> [i32; 2] {
 
 /// Where to look: the corners and the middles of the borders, where the field was found largest, the ghosts' centres,
 /// and the rest spread evenly over the window.
-pub(crate) fn sample_pixels(ghosts: &[Ghost], plan: &Plan, frame: Frame) -> Vec<[i32; 2]> {
+pub(crate) fn sample_pixels(plan: &Plan) -> Vec<[i32; 2]> {
+    let (ghosts, frame) = (plan.problem().ghosts(), plan.problem().frame());
     let window = frame.window;
     let most = (EFFORT / ghosts.len().max(1)).clamp(FEWEST, MOST);
     let (right, bottom) = (window.width as i32 - 1, window.height as i32 - 1);
@@ -190,15 +196,15 @@ pub(crate) fn sample_pixels(ghosts: &[Ghost], plan: &Plan, frame: Frame) -> Vec<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::Window;
+    use crate::frame::Frame;
     use crate::plan::{Request, plan};
 
     #[test]
     fn samples_lie_in_the_window_and_hold_its_corners() {
         let window = Window { x: -5, y: 7, width: 33, height: 12 };
         let frame = Frame::full(40, 30).with_window(window);
-        let plan = plan(&[], &Request::new(frame, 1e-3)).unwrap();
-        let pixels = sample_pixels(&[], &plan, frame);
+        let plan = plan(&Problem::new([], frame), &Request::new(1e-3)).unwrap();
+        let pixels = sample_pixels(&plan);
         assert!(pixels.iter().all(|&[i, j]| (-5..28).contains(&i) && (7..19).contains(&j)), "{pixels:?}");
         for corner in [[-5, 7], [27, 7], [-5, 18], [27, 18]] {
             assert!(pixels.contains(&corner), "{corner:?} of {pixels:?}");

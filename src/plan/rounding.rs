@@ -6,6 +6,7 @@ use super::Evaluator;
 use super::slots::by_chunks;
 use super::weigh::{Weighed, along};
 use crate::frame::Frame;
+use crate::problem::Problem;
 use crate::scene::Ghost;
 
 /// The error, for each unit of weight, that phases, tables and sums in f32 make at most: about twice the worst that
@@ -47,11 +48,12 @@ pub(super) const SEEN_DEGREE: u32 = 100;
 const PER_DEGREE: f64 = 200.0;
 
 /// A bound of the error of f32, storage included, for series up to a degree; relative to the field's largest value.
-pub(super) fn bound(ghosts: &[Ghost], weighed: &Weighed, frame: Frame, evaluator: Evaluator, degree: u32) -> f64 {
+pub(super) fn bound(problem: &Problem, weighed: &Weighed, evaluator: Evaluator, degree: u32) -> f64 {
     if evaluator != Evaluator::Direct {
         let growth = 1.0 + f64::from(degree.saturating_sub(SEEN_DEGREE)) / PER_DEGREE;
         return per_weight(evaluator) * growth * weighed.weight.max(1.0);
     }
+    let (ghosts, frame) = (problem.ghosts(), problem.frame());
     let kept = weighed.weights.iter().filter(|&&weight| weight > 0.0).count();
     let sum =
         if kept <= LOOKED_AT { direct_in_cells(ghosts, weighed, frame) } else { direct_anywhere(ghosts, weighed) };
