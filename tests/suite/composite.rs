@@ -5,7 +5,7 @@ use vglare::plan::{Evaluator, Plan, Request};
 use vglare::renderer::{Normalize, Renderer, Settings};
 use vglare::scene::Emission;
 
-use crate::support::{glare, on_each_backend, plan, plan_with, scenes};
+use crate::support::{glare, on_each_backend, on_one_backend, plan, plan_with, scenes};
 
 const SIZE: [u32; 2] = [37, 23];
 
@@ -58,7 +58,7 @@ fn the_picture_is_the_photo_and_the_glare() {
 #[test]
 fn a_strength_of_nothing_leaves_every_value_as_it_is() {
     let plan = scene();
-    on_each_backend(|_, renderer| {
+    on_one_backend(|_, renderer| {
         renderer.set_scene(&plan).unwrap();
         assert_eq!(composite(renderer, &photo(), &Settings { strength: 0.0, ..Settings::default() }), photo());
     });
@@ -73,7 +73,7 @@ fn alpha_keeps_every_bit() {
     for (pixel, alpha) in photo.iter_mut().zip(alphas.into_iter().cycle()) {
         pixel[3] = alpha;
     }
-    on_each_backend(|backend, renderer| {
+    on_one_backend(|backend, renderer| {
         renderer.set_scene(&plan).unwrap();
         for light_gain in [[1.0; 3], [0.5; 3]] {
             let settings = Settings { threshold: 1.0, light_gain, ..Settings::default() };
@@ -93,7 +93,7 @@ fn a_bad_pixel_harms_only_itself() {
     for (index, value) in bad {
         photo[index][1] = value;
     }
-    on_each_backend(|_, renderer| {
+    on_one_backend(|_, renderer| {
         renderer.set_scene(&plan).unwrap();
         let settings = Settings { light_gain: [0.5; 3], threshold: 1.0, ..Settings::default() };
         let expected = composite(renderer, &clean, &settings);
@@ -112,7 +112,7 @@ fn a_bad_pixel_harms_only_itself() {
 #[test]
 fn the_glare_is_linear_in_the_strength() {
     let plan = scene();
-    on_each_backend(|_, renderer| {
+    on_one_backend(|_, renderer| {
         let plain = glare(renderer, &plan, frame());
         for strength in [0.0, 0.25, 3.0, -1.5] {
             let scaled = renderer.glare(frame(), &Settings { strength, ..Settings::default() }).unwrap();
@@ -146,7 +146,7 @@ fn light_is_taken_only_where_the_photo_is_bright_enough() {
     let taken = [true, false, true, false, false, false];
     let frame = Frame::full(6, 1);
     let photo = colours.map(|[r, g, b]| [r, g, b, 1.0]);
-    on_each_backend(|_, renderer| {
+    on_one_backend(|_, renderer| {
         // No ghosts: what is left is the photo with its lights taken.
         renderer.set_scene(&plan_with(&[], frame, 1e-2, Evaluator::Rows)).unwrap();
         let mut picture = photo;
@@ -169,7 +169,7 @@ fn light_is_taken_by_what_a_pixel_gives_of_its_colour() {
     let photo = [hidden[0], hidden[1], hidden[2], hidden[3], [0.0, 0.0, 90.0, 1.0], [2.0, 2.0, -90.0, 7.0]];
     let taken = [false, false, true, false, false, true];
     let frame = Frame::full(6, 1);
-    on_each_backend(|_, renderer| {
+    on_one_backend(|_, renderer| {
         renderer.set_scene(&plan_with(&[], frame, 1e-2, Evaluator::Rows)).unwrap();
         let mut picture = photo;
         renderer.composite(frame, &mut picture, &settings).unwrap();
@@ -184,7 +184,7 @@ fn light_is_taken_by_what_a_pixel_gives_of_its_colour() {
 fn a_constant_is_taken_from_the_field_before_it_becomes_glare() {
     let plan = scene();
     let constant = [0.05, 0.01, 0.002];
-    on_each_backend(|_, renderer| {
+    on_one_backend(|_, renderer| {
         renderer.set_scene(&plan).unwrap();
         for normalize in [Normalize::None, Normalize::Clamp, Normalize::Minmax] {
             let settings = Settings { strength: 2.0, normalize, ..Settings::default() };
@@ -216,7 +216,7 @@ fn the_constant_term_is_all_of_a_series_of_degree_zero() {
         degree: Some([degree; 2]),
         ..Request::new(1e-2)
     };
-    on_each_backend(|_, renderer| {
+    on_one_backend(|_, renderer| {
         renderer.set_scene(&plan(&ghosts, frame(), &request(0)).unwrap()).unwrap();
         let level = renderer.probe(frame(), &[[3, 4]]).unwrap()[0];
         renderer.set_scene(&plan(&ghosts, frame(), &request(40)).unwrap()).unwrap();

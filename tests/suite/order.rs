@@ -6,7 +6,7 @@ use vglare::plan::{Evaluator, Plan};
 use vglare::renderer::{Normalize, Renderer, Settings};
 use vglare::scene::Ghost;
 
-use crate::support::{bits, on_backend, on_each_backend, plan_with, scenes};
+use crate::support::{bits, on_backend, on_each_backend, on_fresh_renderer, plan_with, scenes};
 
 /// Everything that a scene gives, as bits.
 #[derive(Debug, PartialEq)]
@@ -56,7 +56,7 @@ fn the_first_frame_is_the_second() {
     for backend in Backend::ALL {
         for evaluator in Evaluator::ALL {
             let scene = Scene::new(2, [41, 29], evaluator);
-            on_backend(backend, |renderer| {
+            on_fresh_renderer(backend, |renderer| {
                 let (first, second) = (scene.frames(renderer), scene.frames(renderer));
                 assert!(first == second, "{backend}, {evaluator}");
             });
@@ -69,21 +69,21 @@ fn a_fresh_renderer_may_begin_with_anything() {
     for evaluator in Evaluator::ALL {
         let scene = Scene::new(4, [41, 29], evaluator);
         let (frame, settings) = (scene.frame, Settings::default());
-        let expected = on_backend(Backend::Egl, |renderer| scene.frames(renderer));
-        on_backend(Backend::Egl, |renderer| {
+        let expected = on_fresh_renderer(Backend::Egl, |renderer| scene.frames(renderer));
+        on_fresh_renderer(Backend::Egl, |renderer| {
             renderer.set_scene(&scene.plan).unwrap();
             assert_eq!(bits(&renderer.glare(frame, &settings).unwrap()), expected.glare, "{evaluator}: glare");
         });
-        on_backend(Backend::Egl, |renderer| {
+        on_fresh_renderer(Backend::Egl, |renderer| {
             renderer.set_scene(&scene.plan).unwrap();
             let minmax = Settings { normalize: Normalize::Minmax, ..settings };
             assert_eq!(bits(&renderer.glare(frame, &minmax).unwrap()), expected.stretched, "{evaluator}: minmax");
         });
-        on_backend(Backend::Egl, |renderer| {
+        on_fresh_renderer(Backend::Egl, |renderer| {
             renderer.set_scene(&scene.plan).unwrap();
             assert_eq!(renderer.range(frame).unwrap().map(f32::to_bits), expected.range, "{evaluator}: range");
         });
-        on_backend(Backend::Egl, |renderer| {
+        on_fresh_renderer(Backend::Egl, |renderer| {
             renderer.set_scene(&scene.plan).unwrap();
             let probe = renderer.probe(frame, &[[0, 0]]).unwrap();
             assert_eq!(probe[0].map(f64::to_bits), expected.probe[0], "{evaluator}: probe");

@@ -6,7 +6,7 @@ use vglare::reference::direct_at;
 use vglare::scene::Ghost;
 
 use crate::support::check::within;
-use crate::support::{on_each_backend, plan_with, scenes};
+use crate::support::{on_one_backend, plan_with, scenes};
 
 const TOLERANCE: f64 = 1e-3;
 
@@ -16,7 +16,7 @@ fn ghosts() -> Vec<Ghost> {
 
 #[test]
 fn every_size_of_a_picture_keeps_the_promise_at_its_own_pixels() {
-    on_each_backend(|backend, renderer| {
+    on_one_backend(|backend, renderer| {
         for [width, height] in [[960, 540], [1920, 1080], [3840, 2160], [7680, 4320]] {
             let frame = Frame::full(width, height);
             for evaluator in Evaluator::ALL {
@@ -37,7 +37,7 @@ fn pixels_that_share_their_centres_agree_across_sizes() {
     // Three times as many pixels a side: the middle one of each nine lies where the coarse one does.
     let coarse = Frame::full(320, 180);
     let pixels: Vec<[i32; 2]> = (0..180).step_by(13).flat_map(|j| (0..320).step_by(17).map(move |i| [i, j])).collect();
-    on_each_backend(|backend, renderer| {
+    on_one_backend(|backend, renderer| {
         for evaluator in Evaluator::ALL {
             let mut look = |frame: Frame, times: i32| {
                 let plan = plan_with(&ghosts(), frame, TOLERANCE, evaluator);

@@ -10,7 +10,7 @@ use vglare::scene::Ghost;
 use vglare::series::Bell;
 
 use crate::support::check::within;
-use crate::support::{bits, glare, on_backend, on_each_backend, plan, scenes};
+use crate::support::{bits, glare, on_backend, on_one_backend, plan, scenes};
 
 const FRAME: Frame = Frame::full(160, 90);
 
@@ -54,7 +54,7 @@ fn a_series_and_a_sum_beside_it_are_as_exact_as_predicted() {
                 assert_eq!(plan.evaluator(), evaluator, "{bell}: {:?}", plan.costs);
                 assert!((3..200).contains(&plan.summed()), "{bell}: {:?}", plan.costs);
                 assert!(plan.predicted.total() <= tolerance, "{:?}", plan.predicted);
-                on_each_backend(|backend, renderer| {
+                on_one_backend(|backend, renderer| {
                     renderer.set_scene(&plan).unwrap();
                     let actual = renderer.probe(FRAME, &pixels).unwrap();
                     let name = format!("{backend}, {evaluator} beside {bell} at {tolerance:e}");

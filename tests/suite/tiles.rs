@@ -4,7 +4,7 @@ use vglare::frame::{Frame, Window};
 use vglare::plan::Evaluator;
 use vglare::renderer::{Normalize, Renderer, Settings};
 
-use crate::support::{bits, on_each_backend, plan_with, scenes};
+use crate::support::{bits, on_one_backend, plan_with, scenes};
 
 const FRAME: Frame = Frame::full(83, 45).with_window(Window { x: -3, y: 2, width: 87, height: 41 });
 
@@ -22,7 +22,7 @@ fn pictures(renderer: &mut Renderer, tile_pixels: usize) -> [Vec<[u32; 4]>; 3] {
 #[test]
 fn tiles_meet_bit_for_bit() {
     let ghosts = scenes::random(8, 30, FRAME);
-    on_each_backend(|backend, renderer| {
+    on_one_backend(|backend, renderer| {
         for evaluator in Evaluator::ALL {
             renderer.set_scene(&plan_with(&ghosts, FRAME, 1e-3, evaluator)).unwrap();
             let whole = pictures(renderer, 4 << 20);

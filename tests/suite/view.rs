@@ -8,7 +8,7 @@ use vglare::plan::Request;
 use vglare::renderer::{Mask, Normalize, Part, Renderer, Settings, View};
 use vglare::scene::{Emission, FindOptions, find};
 
-use crate::support::{bits, on_each_backend, plan, scenes};
+use crate::support::{bits, on_each_backend, on_one_backend, plan, scenes};
 
 const SURROUND: [f32; 3] = [0.2, 0.4, 0.6];
 
@@ -95,7 +95,7 @@ fn rows_count_from_the_top_and_pixels_are_squares() {
 #[test]
 fn what_is_made_smaller_is_the_mean_of_its_light() {
     let photo: Vec<_> = (0..30 * 20u32).map(|k| [(k * 7919 % 100) as f32 / 100.0, 0.5, 0.0, 1.0]).collect();
-    on_each_backend(|_, renderer| {
+    on_one_backend(|_, renderer| {
         for pitch in [2.0, 5.0, 2.5] {
             let size = [(30.0 / pitch) as u32, (20.0 / pitch) as u32];
             let got = shown(renderer, &photo, 30, &View { pitch, ..view() }, size);
@@ -122,7 +122,7 @@ fn the_wipe_parts_photo_and_picture() {
     let frame = Frame::full(16, 8);
     let photo = vec![[0.1, 0.1, 0.1, 1.0]; 128];
     let ghosts = [scenes::one([0.0, 0.0], 1.0, [0.5, 0.0, 0.0])];
-    on_each_backend(|_, renderer| {
+    on_one_backend(|_, renderer| {
         renderer.set_scene(&plan(&ghosts, frame, &Request::new(1e-3)).unwrap()).unwrap();
         renderer.load(frame, &photo).unwrap();
         renderer.draw(frame, &Settings::default()).unwrap();
@@ -147,7 +147,7 @@ fn a_held_field_gives_the_same_picture() {
     let ghosts = [scenes::one([0.3, -0.2], 0.4, [0.5, 0.25, 1.0])];
     let other = [scenes::one([-0.3, 0.2], 0.2, [0.1, 0.9, 0.2])];
     let settings = Settings { strength: 1.7, ..Settings::default() };
-    on_each_backend(|_, renderer| {
+    on_one_backend(|_, renderer| {
         let mut pictures = Vec::new();
         let by = |ghosts: &[_]| plan(ghosts, frame, &Request::new(1e-3)).unwrap();
         renderer.load(frame, &photo).unwrap();
@@ -181,7 +181,7 @@ fn a_mixed_view_is_that_of_the_picture() {
     let photo: Vec<_> = (0..60 * 40u32).map(|k| [(k * 7919 % 100) as f32 / 200.0, 0.1, 0.3, 1.0]).collect();
     let scenes = [[0.3, -0.2], [-0.4, 0.5]].map(|center| [scenes::one(center, 0.4, [0.5, 0.25, 1.0])]);
     let places = [(1.0, 0.0, 60), (0.4, 7.25, 80), (2.5, -3.0, 40), (14.0, -100.0, 30)];
-    on_each_backend(|_, renderer| {
+    on_one_backend(|_, renderer| {
         renderer.load(frame, &photo).unwrap();
         for ghosts in &scenes {
             renderer.set_scene(&plan(ghosts, frame, &Request::new(1e-3)).unwrap()).unwrap();
@@ -219,7 +219,7 @@ fn a_coarse_field_lies_where_the_fine_one_does() {
     let photo = vec![[0.02, 0.05, 0.1, 1.0]; 121 * 80];
     // Off the centre both ways, so that a field upside down or shifted is seen.
     let ghosts = [scenes::one([0.7, -0.4], 0.5, [0.3, 0.2, 0.1])];
-    on_each_backend(|_, renderer| {
+    on_one_backend(|_, renderer| {
         renderer.load(frame, &photo).unwrap();
         for pitch in [0.5, 1.0, 1.7] {
             let screen = Screen::hidden(renderer.device(), [(121.0 / pitch) as u32, (80.0 / pitch) as u32]).unwrap();
@@ -266,7 +266,7 @@ fn the_mask_marks_what_the_search_takes_for_light() {
     let weights = [0.3, 0.9, -0.2];
     let premultiplied: Emission = weights.into();
     let straight = Emission { straight: true, ..premultiplied };
-    on_each_backend(|_, renderer| {
+    on_one_backend(|_, renderer| {
         for (emission, limit, expected) in [
             (premultiplied, 5000.0, &[10, 11, 16, 17][..]),
             (premultiplied, 0.0, &[10, 11, 14, 16, 17]),

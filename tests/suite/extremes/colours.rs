@@ -8,7 +8,7 @@ use vglare::renderer::{Normalize, Settings};
 use vglare::scene::Ghost;
 
 use super::{every_choice, look, request};
-use crate::support::{glare, on_backend, on_each_backend, plan, plan_with, scenes};
+use crate::support::{glare, on_backend, on_one_backend, plan, plan_with, scenes};
 
 fn frame() -> Frame {
     Frame::full(65, 37)
@@ -115,7 +115,7 @@ fn flat_fields_have_no_contrast_to_stretch() {
         ("what cancels", vec![scenes::one([0.3, 0.1], 1.0, [1.0; 3]), scenes::one([0.3, 0.1], 1.0, [-1.0; 3])]),
     ];
     let settings = Settings { normalize: Normalize::Minmax, ..Settings::default() };
-    on_each_backend(|backend, renderer| {
+    on_one_backend(|backend, renderer| {
         for (name, ghosts) in &flat {
             for evaluator in Evaluator::ALL {
                 let plan = plan_with(ghosts, frame(), 1e-4, evaluator);
@@ -135,7 +135,7 @@ fn flat_fields_have_no_contrast_to_stretch() {
 #[test]
 fn weak_contrast_is_stretched_all_the_same() {
     let settings = Settings { normalize: Normalize::Minmax, ..Settings::default() };
-    on_each_backend(|backend, renderer| {
+    on_one_backend(|backend, renderer| {
         for size in [3.0, 30.0, 100.0] {
             let ghosts = [scenes::one([0.3, 0.1], size, [1.0; 3])];
             for evaluator in Evaluator::ALL {
