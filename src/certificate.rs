@@ -20,7 +20,8 @@ const EFFORT: usize = 20_000_000;
 const BATCH: usize = 1 << 14;
 
 /// Where a field is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[cfg_attr(feature = "terminal", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Verify {
     /// At some hundred pixels
