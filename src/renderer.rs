@@ -35,7 +35,7 @@ use crate::gpu::runner::Runner;
 use crate::gpu::spectrum::{Coefficients, Ghosts, Spectrum, SpectrumGroup};
 use crate::gpu::view::ViewPass;
 use crate::gpu::{Device, PassTime};
-use crate::plan::{Evaluator, Group, Plan, Transform};
+use crate::plan::{Evaluator, Group, Plan, Precision, Transform};
 use crate::scene::Ghost;
 use crate::{Error, Result};
 
@@ -107,8 +107,7 @@ impl Renderer {
         }
         self.forget_scene();
         if plan.evaluator == Evaluator::Direct || plan.summed() > 0 {
-            let (direct, shapes) = convert::direct_ghosts(ghosts, plan);
-            self.evaluators.set_ghosts(&self.runner, &direct, &shapes)?;
+            self.upload_summed(ghosts, plan)?;
         }
         if plan.evaluator != Evaluator::Direct {
             self.compute_spectrum(ghosts, plan)?;
@@ -116,6 +115,17 @@ impl Renderer {
         self.runner.device().check("computing the spectrum")?;
         self.keep_scene(ghosts, plan);
         Ok(())
+    }
+
+    /// Uploads the ghosts that are summed directly, in the floats that the plan asks for.
+    fn upload_summed(&mut self, ghosts: &[Ghost], plan: &Plan) -> Result<()> {
+        if plan.precision == Precision::Double {
+            let (direct, shapes) = convert::direct_ghosts(ghosts, plan, convert::double_ghost);
+            return self.evaluators.set_ghosts(&self.runner, &direct, &shapes);
+        }
+        let (direct, shapes) = convert::direct_ghosts(ghosts, plan, convert::single_ghost);
+        let single: Vec<[f32; 4]> = shapes.iter().map(|row| row.map(|x| x as f32)).collect();
+        self.evaluators.set_ghosts(&self.runner, &direct, &single)
     }
 
     fn compute_spectrum(&mut self, ghosts: &[Ghost], plan: &Plan) -> Result<()> {

@@ -100,9 +100,10 @@ pub(super) fn estimate(plan: &Plan, request: &Request) -> Cost {
         nodes: plan.lattice.map_or([0.0; 2], |lattice| lattice.nodes.map(f64::from)),
     };
     let summed = plan.summed();
+    let sum = || direct(summed, request) * plan.precision.slower();
     let nanoseconds = match plan.evaluator {
-        Evaluator::Direct => direct(summed, request) + request.cost_model.pass,
-        evaluator if summed > 0 => spectrum + field(evaluator, &size, request) + direct(summed, request),
+        Evaluator::Direct => sum() + request.cost_model.pass,
+        evaluator if summed > 0 => spectrum + field(evaluator, &size, request) + sum(),
         evaluator => spectrum + field(evaluator, &size, request),
     };
     Cost { evaluator: plan.evaluator, summed, milliseconds: nanoseconds * 1e-6 }

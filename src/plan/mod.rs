@@ -7,6 +7,7 @@ mod amplitudes;
 mod check;
 mod cost;
 mod decay;
+mod direct;
 mod gather;
 mod lattice;
 mod period;
@@ -27,6 +28,7 @@ use crate::{Error, Result};
 
 pub use crate::choices::Evaluator;
 pub use cost::{Cost, CostModel, GRID_PASSES};
+pub use direct::Precision;
 pub use gather::Transform;
 pub use lattice::{Lattice, MOST_NODES};
 pub use search::{LOOSEST, plan_at_least, plan_within};
@@ -86,6 +88,8 @@ pub struct Plan {
     pub tolerance: f64,
     /// How the field is computed.
     pub evaluator: Evaluator,
+    /// The floats in which the summed ghosts are computed, where there are any.
+    pub precision: Precision,
     /// The period in x and y.
     pub period: DVec2,
     /// Highest harmonic in x and y.
@@ -235,8 +239,11 @@ pub fn plan(ghosts: &[Ghost], asked: &Request) -> Result<Plan> {
     request.period.map_or(Ok(()), check::period)?;
     let survey = Survey::new(ghosts, request);
     check::scale(survey.weighed.scale)?;
-    // A period or a degree asks for a series.
-    let series = asked.period.is_some() || asked.degree.is_some();
+    // A period or a degree asks for a series, but for the one period that periodic bells have: it is theirs by `direct` too.
+    let periodic = ghosts.par_iter().any(|ghost| ghost.bell.shape().period().is_some());
+    let series = asked.degree.is_some() || (asked.period.is_some() && !periodic);
+    // Who asks for an evaluator in a period gets it as it comes.
+    let given = series || (asked.period.is_some() && asked.evaluator.is_some());
     let wanted = |evaluator| match request.evaluator {
         Some(only) => only == evaluator,
         None => !(series && evaluator == Evaluator::Direct),
@@ -248,7 +255,7 @@ pub fn plan(ghosts: &[Ghost], asked: &Request) -> Result<Plan> {
     for &evaluator in &wanted {
         match candidate(ghosts, &survey, wide.as_ref(), request, evaluator) {
             // In the period that periodic bells bring with them the copies of others may land on the picture.
-            Ok(plan) if !series && plan.predicted.total() > request.tolerance => {
+            Ok(plan) if !given && plan.predicted.total() > request.tolerance => {
                 let total = plan.predicted.total();
                 let reason = format!("{evaluator} would be off by {total:.1e} in the period of the bells");
                 refusals.push((evaluator, Error::Plan(reason)));
@@ -334,9 +341,9 @@ struct Survey {
     weighed: Weighed,
     groups: Vec<Group>,
     reaches: Vec<Reach>,
-    /// Groups that are no part of the series, and what f32 costs their sum.
+    /// Groups that are no part of the series, and what floats of the precision cost their sum.
     summed: Vec<Group>,
-    summed_rounding: f64,
+    summed_in: (Precision, f64),
 }
 
 impl Survey {
@@ -344,7 +351,7 @@ impl Survey {
         let weighed = weigh::weigh(ghosts, request);
         let groups = terms::group(ghosts, &weighed);
         let reaches = period::reaches(ghosts, &weighed, request.frame);
-        Self { weighed, groups, reaches, summed: Vec::new(), summed_rounding: 0.0 }
+        Self { weighed, groups, reaches, summed: Vec::new(), summed_in: Default::default() }
     }
 }
 
@@ -356,22 +363,33 @@ fn candidate(
     request: &Request,
     evaluator: Evaluator,
 ) -> Result<Plan> {
+    if evaluator == Evaluator::Direct {
+        let bounds = direct::bounds(ghosts, &survey.weighed, request.frame);
+        let single = with_rounding((Precision::Single, bounds.single), survey, wide, request, evaluator);
+        return match single {
+            Err(Error::ToleranceBelowFloor { .. }) => {
+                with_rounding((Precision::Double, bounds.double), survey, wide, request, evaluator)
+            }
+            single => single,
+        };
+    }
     // What rounding costs depends on the degree, and the degree on what rounding leaves of the tolerance.
     let mut degree = request.degree.map_or(rounding::SEEN_DEGREE, |[n, m]| n.max(m));
     loop {
-        let rounding = rounding::bound(ghosts, &survey.weighed, request.frame, evaluator, degree);
-        let plan = with_rounding(rounding + survey.summed_rounding, survey, wide, request, evaluator)?;
+        let (precision, summed) = survey.summed_in;
+        let rounding = rounding::bound(&survey.weighed, evaluator, degree) + summed;
+        let plan = with_rounding((precision, rounding), survey, wide, request, evaluator)?;
         let needed = plan.degree[0].max(plan.degree[1]);
-        if evaluator == Evaluator::Direct || needed <= degree {
+        if needed <= degree {
             return Ok(plan);
         }
         degree = needed + needed / 16;
     }
 }
 
-/// The plan of one evaluator that rounding costs so much.
+/// The plan of one evaluator that rounding costs so much, its summed ghosts in floats of this precision.
 fn with_rounding(
-    rounding: f64,
+    (precision, rounding): (Precision, f64),
     survey: &Survey,
     wide: Option<&Wide>,
     request: &Request,
@@ -391,6 +409,7 @@ fn with_rounding(
     let mut plan = Plan {
         tolerance: request.tolerance,
         evaluator,
+        precision,
         period: DVec2::ONE,
         degree: [0; 2],
         counts: Vec::new(),

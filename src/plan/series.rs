@@ -28,7 +28,7 @@ impl Wide {
         if given || !amplitudes::worth_a_try(&survey.groups) {
             return None;
         }
-        let rounding = rounding::bound(ghosts, &survey.weighed, request.frame, Evaluator::Grid, rounding::SEEN_DEGREE);
+        let rounding = rounding::bound(&survey.weighed, Evaluator::Grid, rounding::SEEN_DEGREE);
         let usable = (request.tolerance - rounding).max(0.25 * request.tolerance);
         let period = request.period.unwrap_or_else(|| period::shortest(&survey.reaches, usable * share::PERIODISATION));
         let mut groups = survey.groups.clone();

@@ -2,11 +2,14 @@
 
 use super::decay::Decay;
 use super::weigh::Weighed;
-use super::{Evaluator, Group, Request, Survey, Transform, cost, gather, period, rounding, share};
+use super::{Evaluator, Group, Request, Survey, Transform, cost, direct, gather, period, share};
 use crate::scene::Ghost;
 
 /// Ghosts that may be summed beside a series, at most.
 const FEW: usize = 512;
+
+/// What of the tolerance their rounding may take before they are summed in 64-bit floats.
+const SUMMED: f64 = 0.1;
 
 /// The others should cost less than this part of all of them, by the estimate, to be planned for.
 const WORTH_IT: f64 = 0.9;
@@ -33,9 +36,9 @@ pub(super) fn apart(ghosts: &[Ghost], survey: &Survey, request: &Request) -> Opt
         });
     }
     let weighed = only(&survey.weighed, &left);
-    let rounding = rounding::bound(ghosts, &only(&survey.weighed, &moved), request.frame, Evaluator::Direct, 0);
+    let bounds = direct::bounds(ghosts, &only(&survey.weighed, &moved), request.frame);
     let reaches = period::reaches(ghosts, &weighed, request.frame);
-    Some(Survey { weighed, groups: left, reaches, summed: moved, summed_rounding: rounding })
+    Some(Survey { weighed, groups: left, reaches, summed: moved, summed_in: bounds.within(SUMMED * request.tolerance) })
 }
 
 /// The weights of these groups' ghosts alone.

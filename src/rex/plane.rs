@@ -11,7 +11,7 @@ use super::chart::{Axis, Chart, Map, Scalar};
 use super::report::{Field, Figure};
 use crate::Result;
 use crate::frame::Frame;
-use crate::plan::{Evaluator, Group, Plan, Prediction, Transform};
+use crate::plan::{Evaluator, Group, Plan, Precision, Prediction, Transform};
 use crate::renderer::{Renderer, Settings};
 use crate::scene::Ghost;
 use crate::series::Bell;
@@ -133,6 +133,7 @@ impl Scene {
         Plan {
             tolerance: f64::INFINITY,
             evaluator,
+            precision: Precision::default(),
             period: self.period * canvas.scale,
             degree: self.degree,
             terms: counts.iter().map(|&count| count as usize).sum(),
