@@ -9,7 +9,8 @@ double exponential(double x) {
     // ln 2 in two parts, of which the first has room for the power.
     double r = (x - 0.693147180369123816490lf * double(power)) - 1.90821492927058770002e-10lf * double(power);
     // Taylor's polynomial, |r| < 0.35.
-    double sum = 1.0lf / 479001600.0lf;
+    double sum = 1.0lf / 6227020800.0lf;
+    sum = sum * r + 1.0lf / 479001600.0lf;
     sum = sum * r + 1.0lf / 39916800.0lf;
     sum = sum * r + 1.0lf / 3628800.0lf;
     sum = sum * r + 1.0lf / 362880.0lf;

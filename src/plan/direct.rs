@@ -52,10 +52,13 @@ const HALF_A_UNIT: f64 = 0.5 * f32::EPSILON as f64;
 
 /// The error, for each unit of weight, of a bell and its addition in f32 where its exponent is small: about twice the worst
 /// that tests/suite/rounding.rs has seen on Mesa's software renderer.
-const PER_WEIGHT: f64 = 6e-7;
+const PER_WEIGHT: f64 = 4.5e-7;
 
-/// And in f64, where functions are off by some 1e-15, and for each addition.
-const PER_WEIGHT_DOUBLE: f64 = 1e-14;
+/// What is left where all is f64: the field is stored in f32, and glare is its product with a scale that is rounded too.
+const STORED: f64 = 3.0 * HALF_A_UNIT;
+
+/// And in f64, where functions are off by some units of 2⁻⁵³, and for each addition.
+const PER_WEIGHT_DOUBLE: f64 = 2e-15;
 const PER_ADDITION_DOUBLE: f64 = 0.5 * f64::EPSILON;
 
 /// What f32 may shift a pixel by, for each unit of its position: that is a product of two numbers that are rounded, and is
@@ -88,7 +91,7 @@ pub(super) fn bounds(ghosts: &[Ghost], weighed: &Weighed, frame: Frame) -> Bound
     let additions = PER_WEIGHT_DOUBLE + PER_ADDITION_DOUBLE * kept as f64;
     Bounds {
         single: largest(0).max(PER_WEIGHT),
-        double: HALF_A_UNIT + additions * (1.0 + largest(1)) + turned(ghosts, weighed, frame),
+        double: STORED + additions * (1.0 + largest(1)) + turned(ghosts, weighed, frame),
     }
 }
 
@@ -146,8 +149,8 @@ struct Steepness<'a> {
     shape: &'a dyn Shape,
     /// Whether it depends on the radius alone.
     radial: bool,
-    /// Whether it is an exponential, in which a rounding of the exponent counts as often as the exponent is large.
-    exponential: bool,
+    /// Half a period in sizes of a bell that has one lobe in it; infinite for a Gaussian.
+    half_period: Option<DVec2>,
     /// How far its centre is moved, in sizes.
     moved: DVec2,
     /// What of it is at most off for each size that it is off along one axis: none where f32 has no room for one over the
@@ -180,7 +183,11 @@ impl<'a> Steepness<'a> {
             ghost,
             shape,
             radial: matches!(shape.modes(), Modes::Radial(_)),
-            exponential: matches!(ghost.bell, Bell::Gaussian),
+            half_period: match &ghost.bell {
+                Bell::Gaussian => Some(DVec2::INFINITY),
+                Bell::VonMises(bell) => Some(0.5 * bell.period / ghost.size),
+                _ => None,
+            },
             moved: DVec2::new(moved(ghost.center.x), moved(ghost.center.y)) / ghost.size,
             held: ghost.size.max_element() < 1.0 / f64::from(f32::MIN_POSITIVE),
             beside,
@@ -196,8 +203,16 @@ impl<'a> Steepness<'a> {
         let far = ((low - center).abs().max((high - center).abs()) / size).max(near);
         let position = PER_POSITION * low.abs().max(high.abs()) / size;
         let [x, y] = [0, 1].map(|axis| {
-            let shift = position[axis] + self.moved[axis] + self.beside[axis] + self.scaled(far[axis]);
-            self.place(near[axis], shift)
+            // Within half a period, a von Mises bell is what a Gaussian is at the chord, which is shorter.
+            let chord = self.half_period.map(|half| half[axis]).filter(|half| far[axis] <= *half);
+            let near = chord.map_or(near[axis], |half| {
+                let turn = std::f64::consts::FRAC_PI_2 / half;
+                if turn > 0.0 { (turn * near[axis]).sin() / turn } else { near[axis] }
+            });
+            // The exponent has it already, which is where an exponential is off.
+            let scaled = if chord.is_some() { 0.0 } else { self.scaled(far[axis]) };
+            let shift = position[axis] + self.moved[axis] + self.beside[axis] + scaled;
+            self.place(near, shift, chord.is_some())
         });
         [x, y]
     }
@@ -205,24 +220,24 @@ impl<'a> Steepness<'a> {
     /// What the offset's own rounding shifts the bell by, where that goes as far as `far`.
     fn scaled(&self, far: f64) -> f64 {
         match &self.ghost.bell {
-            // The exponent has it already, which is where an exponential is off.
-            Bell::Gaussian => 0.0,
             Bell::VonMises(_) | Bell::SineGaussian(_) => PER_OFFSET * far,
             Bell::Profile(_) => (PER_OFFSET + PER_RADIUS) * far.min(self.shape.ends()),
             _ => PER_OFFSET * far.min(self.shape.ends()),
         }
     }
 
-    fn place(&self, near: f64, shift: f64) -> Place {
+    /// The bell at an offset or farther that f32 shifts by as much; `gaussian` where it is no farther up than a Gaussian.
+    fn place(&self, near: f64, shift: f64, gaussian: bool) -> Place {
+        let shape = if gaussian { Bell::Gaussian.shape() } else { self.shape };
         let shifted = (near - shift).max(0.0);
         // A periodic bell is near again farther on, and its value bounded by 1; exp(−E) (1 + E) is below 1 for every E.
-        let distance = if self.shape.period().is_some() { 0.0 } else { shifted };
+        let distance = if shape.period().is_some() { 0.0 } else { shifted };
         Place {
             near: distance,
             shift,
-            value: along(self.shape, distance),
-            steepest: if self.radial { 0.0 } else { self.shape.steepest(distance) },
-            exponent: if self.exponential { 0.5 * near * near } else { 0.0 },
+            value: along(shape, distance),
+            steepest: if self.radial { 0.0 } else { shape.steepest(distance) },
+            exponent: if gaussian { 0.5 * near * near } else { 0.0 },
         }
     }
 

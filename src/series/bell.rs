@@ -112,6 +112,11 @@ pub trait Shape: Sync {
         f64::INFINITY
     }
 
+    /// Offsets in sizes, along an axis or the radius, at which the bell is steep or has a kink: where to look for errors.
+    fn edges(&self) -> Vec<f64> {
+        vec![1.0, 2.5]
+    }
+
     /// ∫∫ over the plane; over one period, for a periodic bell.
     fn integral(&self, size: DVec2) -> f64;
 

@@ -63,6 +63,10 @@ impl Shape for CosineSquared {
         1.0
     }
 
+    fn edges(&self) -> Vec<f64> {
+        vec![0.5, 0.97]
+    }
+
     fn integral(&self, size: DVec2) -> f64 {
         size.element_product()
     }

@@ -48,6 +48,10 @@ impl Shape for Parabola {
         1.0
     }
 
+    fn edges(&self) -> Vec<f64> {
+        vec![0.97, 1.0]
+    }
+
     fn integral(&self, size: DVec2) -> f64 {
         16.0 / 9.0 * size.element_product()
     }

@@ -49,6 +49,10 @@ impl Shape for Paraboloid {
         1.0
     }
 
+    fn edges(&self) -> Vec<f64> {
+        vec![0.97, 1.0]
+    }
+
     fn integral(&self, size: DVec2) -> f64 {
         FRAC_PI_2 * size.element_product()
     }

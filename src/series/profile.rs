@@ -300,6 +300,19 @@ impl Shape for Profile {
         self.radius()
     }
 
+    /// Both ends of the steepest part and its middle, the sharpest kink, and where the profile ends.
+    fn edges(&self) -> Vec<f64> {
+        let steep = |&i: &usize| self.slopes[i].abs() * self.radii[i + 1];
+        let steepest = (0..self.radii.len() - 1).max_by(|a, b| steep(a).total_cmp(&steep(b))).unwrap_or(0);
+        let sharp = |(radius, kink): &(f64, f64)| kink.abs() * radius;
+        let sharpest = self.kinks().max_by(|a, b| sharp(a).total_cmp(&sharp(b))).map_or(0.0, |(radius, _)| radius);
+        let [near, far] = [self.radii[steepest], self.radii[steepest + 1]];
+        let mut edges = vec![near, 0.5 * (near + far), far, sharpest, self.radius()];
+        edges.sort_unstable_by(f64::total_cmp);
+        edges.dedup();
+        edges
+    }
+
     fn integral(&self, size: DVec2) -> f64 {
         self.volume * size.element_product()
     }
