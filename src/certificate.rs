@@ -2,12 +2,14 @@
 
 mod sample;
 
+use std::sync::Arc;
+
 use crate::compare::{Comparison, compare_in};
-use crate::frame::{Frame, Window};
+use crate::frame::Window;
 use crate::plan::Plan;
+use crate::problem::Problem;
 use crate::reference;
 use crate::renderer::Renderer;
-use crate::scene::Ghost;
 use crate::{Error, Result};
 
 pub(crate) use sample::sample_pixels;
@@ -46,27 +48,21 @@ pub struct Certificate {
 }
 
 impl Certificate {
-    /// Measures the renderer's field, which must be that of `ghosts` and `plan`.
+    /// Renders the plan's field, and measures it at sample pixels.
     ///
     /// # Errors
     /// [`Error::Gl`] where the driver refuses.
-    pub fn measure(renderer: &mut Renderer, ghosts: &[Ghost], plan: &Plan, frame: Frame, asked: f64) -> Result<Self> {
-        Ok(Samples::take(renderer, ghosts, plan, frame, asked)?.certify(ghosts))
+    pub fn measure(renderer: &mut Renderer, plan: &Plan) -> Result<Self> {
+        Ok(Samples::take(renderer, plan)?.certify())
     }
 
-    /// Measures the renderer's field, which must be that of `ghosts` and `plan`, at every pixel of the frame's window;
-    /// `advance` is told how many more are done.
+    /// Renders the plan's field, and measures it at every pixel of its window; `advance` is told how many more are done.
     ///
     /// # Errors
     /// [`Error::Gl`] where the driver refuses.
-    pub fn measure_all(
-        renderer: &mut Renderer,
-        ghosts: &[Ghost],
-        plan: &Plan,
-        frame: Frame,
-        asked: f64,
-        mut advance: impl FnMut(usize),
-    ) -> Result<Self> {
+    pub fn measure_all(renderer: &mut Renderer, plan: &Plan, mut advance: impl FnMut(usize)) -> Result<Self> {
+        let (ghosts, frame) = (plan.problem().ghosts(), plan.problem().frame());
+        renderer.set_scene(plan)?;
         let mut comparison = Comparison::in_units(plan.scale);
         // Where each tile's values begin among all of them.
         let mut tiles: Vec<(usize, Window)> = Vec::new();
@@ -85,7 +81,7 @@ impl Certificate {
         let difference = comparison.difference();
         let worst = tiles.iter().rev().find(|(first, _)| *first <= difference.worst.0);
         Ok(Self {
-            asked,
+            asked: plan.tolerance,
             predicted: plan.predicted.total(),
             measured: difference.relative,
             verify: Verify::Full,
@@ -110,29 +106,38 @@ impl Certificate {
 
 /// A renderer's field at sample pixels, not yet held against the truth: that needs no device, and may be done elsewhere.
 pub(crate) struct Samples {
+    problem: Arc<Problem>,
     pixels: Vec<[i32; 2]>,
     rendered: Vec<[f64; 3]>,
-    frame: Frame,
     unit: [f64; 3],
     asked: f64,
     predicted: f64,
 }
 
 impl Samples {
-    /// Looks the field up, which must be that of `ghosts` and `plan`.
+    /// Renders the plan's field, and looks it up.
     ///
     /// # Errors
     /// [`Error::Gl`] where the driver refuses.
-    pub fn take(renderer: &mut Renderer, ghosts: &[Ghost], plan: &Plan, frame: Frame, asked: f64) -> Result<Self> {
-        let pixels = sample_pixels(ghosts, plan, frame);
-        let rendered = renderer.probe(frame, &pixels)?;
-        Ok(Self { pixels, rendered, frame, unit: plan.scale, asked, predicted: plan.predicted.total() })
+    pub fn take(renderer: &mut Renderer, plan: &Plan) -> Result<Self> {
+        let problem = plan.problem().clone();
+        let pixels = sample_pixels(plan);
+        renderer.set_scene(plan)?;
+        let rendered = renderer.probe(problem.frame(), &pixels)?;
+        Ok(Self {
+            problem,
+            pixels,
+            rendered,
+            unit: plan.scale,
+            asked: plan.tolerance,
+            predicted: plan.predicted.total(),
+        })
     }
 
     /// Holds them against the direct sum of the same ghosts.
-    pub fn certify(&self, ghosts: &[Ghost]) -> Certificate {
-        let points: Vec<_> =
-            self.pixels.iter().map(|&[i, j]| self.frame.position(f64::from(i), f64::from(j))).collect();
+    pub fn certify(&self) -> Certificate {
+        let (ghosts, frame) = (self.problem.ghosts(), self.problem.frame());
+        let points: Vec<_> = self.pixels.iter().map(|&[i, j]| frame.position(f64::from(i), f64::from(j))).collect();
         // In the plan's own unit where that is larger: light that cancels, or that does not reach the picture, is nothing.
         let difference = compare_in(&reference::direct_at(ghosts, &points), &self.rendered, self.unit);
         Certificate {

@@ -28,14 +28,15 @@ const ALONG_BORDERS: i32 = 12;
 
 /// Where to look: the borders, where copies come in; where the field was found largest; centres, flanks and rims of the
 /// ghosts that are strongest, steepest, steepest far from the origin, or left out; and the rest spread evenly over the window.
-pub(crate) fn sample_pixels(ghosts: &[Ghost], plan: &Plan, frame: Frame) -> Vec<[i32; 2]> {
+pub(crate) fn sample_pixels(plan: &Plan) -> Vec<[i32; 2]> {
+    let (ghosts, frame) = (plan.problem().ghosts(), plan.problem().frame());
     let count = ghosts.len().max(1);
     let most = (EFFORT / count).clamp(FEWEST, MOST).max((EFFORT_OF_FEW / count).min(MOST_OF_FEW));
     let mut sample = Sample { frame, pixels: Vec::new(), seen: HashSet::new() };
     sample.borders(if most < MOST { 2 } else { ALONG_BORDERS });
     sample.all(plan.peaks.iter().copied());
     let special = 2 * most / 3;
-    let notable = notable(ghosts, plan, frame);
+    let notable = notable(plan);
     // One pixel of each first: with many ghosts there may be no more.
     sample.all(notable.iter().map(|&k| sample.nearest(&ghosts[k])).collect::<Vec<_>>());
     let each = special.saturating_sub(sample.pixels.len()) / notable.len().max(1);
@@ -51,13 +52,14 @@ pub(crate) fn sample_pixels(ghosts: &[Ghost], plan: &Plan, frame: Frame) -> Vec<
 }
 
 /// The ghosts to look at closely, by their indices.
-fn notable(ghosts: &[Ghost], plan: &Plan, frame: Frame) -> Vec<usize> {
-    let bounds = <[DVec2; 2]>::from(frame.bounds());
+fn notable(plan: &Plan) -> Vec<usize> {
+    let ghosts = plan.problem().ghosts();
+    let bounds = <[DVec2; 2]>::from(plan.problem().frame().bounds());
     let keys: Vec<[f64; 3]> = ghosts.par_iter().map(|ghost| keys(ghost, plan, bounds)).collect();
     let mut chosen: Vec<usize> = (0..3).flat_map(|key| largest(&keys, key, |_| true)).collect();
     if plan.dropped > 0 {
         let mut kept = vec![false; ghosts.len()];
-        let members = plan.groups.iter().flat_map(|group| group.members.iter());
+        let members = plan.groups().flat_map(|group| group.members.iter());
         members.for_each(|&member| kept[member as usize] = true);
         chosen.extend(largest(&keys, 0, |k| !kept[k]));
     }
@@ -186,14 +188,14 @@ mod tests {
     use super::*;
     use crate::frame::Window;
     use crate::plan::{Request, plan};
+    use crate::problem::Problem;
     use crate::series::Bell;
 
     #[test]
     fn samples_lie_in_the_window_and_hold_its_corners() {
         let window = Window { x: -5, y: 7, width: 33, height: 12 };
         let frame = Frame::full(40, 30).with_window(window);
-        let plan = plan(&[], &Request::new(frame, 1e-3)).unwrap();
-        let pixels = sample_pixels(&[], &plan, frame);
+        let pixels = sample_pixels(&plan(&Problem::new([], frame), &Request::new(1e-3)).unwrap());
         assert!(pixels.iter().all(|&[i, j]| (-5..28).contains(&i) && (7..19).contains(&j)), "{pixels:?}");
         for corner in [[-5, 7], [27, 7], [-5, 18], [27, 18]] {
             assert!(pixels.contains(&corner), "{corner:?} of {pixels:?}");
@@ -210,8 +212,7 @@ mod tests {
             size: DVec2::splat(0.4),
             radiance: [1.0; 3],
         };
-        let plan = plan(std::slice::from_ref(&disc), &Request::new(frame, 1e-3)).unwrap();
-        let pixels = sample_pixels(std::slice::from_ref(&disc), &plan, frame);
+        let pixels = sample_pixels(&plan(&Problem::new([disc.clone()], frame), &Request::new(1e-3)).unwrap());
         let radii: Vec<f64> = pixels
             .iter()
             .map(|&[i, j]| ((frame.position(f64::from(i), f64::from(j)) - disc.center) / disc.size).length())

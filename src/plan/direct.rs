@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 use super::weigh::{Weighed, along};
 use crate::frame::Frame;
+use crate::problem::Problem;
 use crate::scene::Ghost;
 use crate::series::{Bell, Modes, Shape};
 
@@ -77,7 +78,8 @@ const FEW: usize = 4096;
 const CELLS: [usize; 2] = [8, 4];
 
 /// The bounds: the worst of some cells of the window, in each of which every ghost is as far away as the cell.
-pub(super) fn bounds(ghosts: &[Ghost], weighed: &Weighed, frame: Frame) -> Bounds {
+pub(super) fn bounds(problem: &Problem, weighed: &Weighed) -> Bounds {
+    let (ghosts, frame) = (problem.ghosts(), problem.frame());
     let kept = weighed.weights.iter().filter(|&&weight| weight > 0.0).count();
     let cells = Cells::new(frame, CELLS[usize::from(kept > FEW)]);
     let chunk = ghosts.len().div_ceil(64).max(256);
