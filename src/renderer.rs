@@ -34,7 +34,7 @@ use crate::gpu::runner::Runner;
 use crate::gpu::spectrum::{Coefficients, Ghosts, Spectrum, SpectrumGroup};
 use crate::gpu::view::ViewPass;
 use crate::gpu::{Device, PassTime};
-use crate::plan::{Evaluator, Plan, Series, Transform};
+use crate::plan::{Evaluator, Plan, Precision, Series, Transform};
 use crate::{Error, Result};
 
 use exchange::Exchange;
@@ -102,8 +102,7 @@ impl Renderer {
         }
         self.forget_scene();
         if plan.series().is_none() || plan.summed() > 0 {
-            let (direct, shapes) = convert::direct_ghosts(plan);
-            self.evaluators.set_ghosts(&self.runner, &direct, &shapes)?;
+            self.upload_summed(plan)?;
         }
         if let Some(series) = plan.series() {
             self.compute_spectrum(plan, series)?;
@@ -111,6 +110,17 @@ impl Renderer {
         self.runner.device().check("computing the spectrum")?;
         self.scene = Some(plan.clone());
         Ok(())
+    }
+
+    /// Uploads the ghosts that are summed directly, in the floats that the plan asks for.
+    fn upload_summed(&mut self, plan: &Plan) -> Result<()> {
+        if plan.precision == Precision::Double {
+            let (direct, shapes) = convert::direct_ghosts(plan, convert::double_ghost);
+            return self.evaluators.set_ghosts(&self.runner, &direct, &shapes);
+        }
+        let (direct, shapes) = convert::direct_ghosts(plan, convert::single_ghost);
+        let single: Vec<[f32; 4]> = shapes.iter().map(|row| row.map(|x| x as f32)).collect();
+        self.evaluators.set_ghosts(&self.runner, &direct, &single)
     }
 
     fn compute_spectrum(&mut self, plan: &Plan, series: &Series) -> Result<()> {

@@ -9,6 +9,7 @@ mod check;
 mod cost;
 mod decay;
 mod decided;
+mod direct;
 mod gather;
 mod lattice;
 mod layer;
@@ -35,6 +36,7 @@ use crate::{Error, Result};
 pub use crate::choices::Evaluator;
 pub use cost::{Cost, CostModel, GRID_PASSES};
 pub use decided::Plan;
+pub use direct::Precision;
 pub use gather::Transform;
 pub use lattice::{Lattice, MOST_NODES};
 pub use layer::{Layer, Series};
@@ -89,8 +91,11 @@ pub fn plan(problem: &Arc<Problem>, asked: &Request) -> Result<Plan> {
     request.period.map_or(Ok(()), check::period)?;
     let survey = Survey::new(problem, request);
     check::scale(survey.weighed.scale)?;
-    // A period or a degree asks for a series.
-    let series = asked.period.is_some() || asked.degree.is_some();
+    // A period or a degree asks for a series, but for the one period that periodic bells have: it is theirs by `direct` too.
+    let periodic = ghosts.par_iter().any(|ghost| ghost.bell.shape().period().is_some());
+    let series = asked.degree.is_some() || (asked.period.is_some() && !periodic);
+    // Who asks for an evaluator in a period gets it as it comes.
+    let given = series || (asked.period.is_some() && asked.evaluator.is_some());
     let wanted = |evaluator| match request.evaluator {
         Some(only) => only == evaluator,
         None => !(series && evaluator == Evaluator::Direct),
@@ -102,7 +107,7 @@ pub fn plan(problem: &Arc<Problem>, asked: &Request) -> Result<Plan> {
     for &evaluator in &wanted {
         match candidate(problem, &survey, wide.as_ref(), request, evaluator) {
             // In the period that periodic bells bring with them the copies of others may land on the picture.
-            Ok(plan) if !series && plan.predicted.total() > request.tolerance => {
+            Ok(plan) if !given && plan.predicted.total() > request.tolerance => {
                 let total = plan.predicted.total();
                 let reason = format!("{evaluator} would be off by {total:.1e} in the period of the bells");
                 refusals.push((evaluator, Error::Plan(reason)));

@@ -6,7 +6,7 @@ use super::amplitudes::{self, Amplitudes};
 use super::candidate::Survey;
 use super::lattice::{self, Marginals};
 use super::{
-    Evaluator, Group, Lattice, Layer, Prediction, Request, Series, check, cost, gather, period, rounding, share, terms,
+    Evaluator, Group, Lattice, Layer, Precision, Prediction, Request, Series, check, cost, gather, period, rounding, share, terms,
 };
 use crate::frame::Frame;
 use crate::problem::Problem;
@@ -32,7 +32,7 @@ impl Wide {
         if given || !amplitudes::worth_a_try(&survey.groups) {
             return None;
         }
-        let rounding = rounding::bound(problem, &survey.weighed, Evaluator::Grid, rounding::SEEN_DEGREE);
+        let rounding = rounding::bound(&survey.weighed, Evaluator::Grid, rounding::SEEN_DEGREE);
         let usable = (request.tolerance - rounding).max(0.25 * request.tolerance);
         let period = request.period.unwrap_or_else(|| period::shortest(&survey.reaches, usable * share::PERIODISATION));
         let mut groups = survey.groups.clone();
@@ -115,7 +115,7 @@ pub(super) fn plan_series(
     }
     let [first, second] = share::GRID.map(|(truncation, interpolation)| brief.with_lattice(truncation, interpolation));
     let cost = |(series, _): &(Series, Prediction)| {
-        cost::estimate(&[Layer::Series(series.clone())], frame, &request.cost_model).milliseconds
+        cost::estimate(&[Layer::Series(series.clone())], Precision::default(), frame, &request.cost_model).milliseconds
     };
     match (first, second) {
         (Ok(first), Ok(second)) => Ok(if cost(&second) < cost(&first) { second } else { first }),

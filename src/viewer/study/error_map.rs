@@ -3,7 +3,7 @@
 use egui::{Color32, ColorImage};
 
 use crate::Result;
-use crate::chart::Map;
+use crate::false_colour::Map;
 use crate::frame::Frame;
 use crate::plan::Plan;
 use crate::reference;

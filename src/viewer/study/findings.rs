@@ -3,8 +3,8 @@
 use egui::{Color32, ColorImage};
 
 use crate::Result;
-use crate::chart::Map;
 use crate::choices::Evaluator;
+use crate::false_colour::Map;
 use crate::frame::Frame;
 use crate::plan::{self, HIGHEST_DEGREE, Plan, Request};
 use crate::reference;
