@@ -9,6 +9,9 @@ use super::{Evaluator, Group, Layer, Plan, Prediction, Request, cost, rounding, 
 use crate::problem::Problem;
 use crate::{Error, Result};
 
+/// The part of the tolerance that a series needs for its own bounds.
+const NEEDED: f64 = 0.25;
+
 /// What all evaluators' plans begin with.
 pub(super) struct Survey {
     pub weighed: Weighed,
@@ -42,8 +45,13 @@ pub(super) fn candidate(
     // What rounding costs depends on the degree, and the degree on what rounding leaves of the tolerance.
     let mut degree = request.degree.map_or(rounding::SEEN_DEGREE, |[n, m]| n.max(m));
     loop {
-        let rounding = rounding::bound(problem, &survey.weighed, evaluator, degree);
-        let plan = with_rounding(problem, rounding + survey.summed_rounding, survey, wide, request, evaluator)?;
+        let mut rounding = rounding::bound(problem, &survey.weighed, evaluator, degree) + survey.summed_rounding;
+        if rounding > (1.0 - NEEDED) * request.tolerance
+            && let Some(wide) = wide.filter(|_| evaluator != Evaluator::Direct)
+        {
+            rounding = rounding.min(wide.rounding(evaluator) + survey.summed_rounding);
+        }
+        let plan = with_rounding(problem, rounding, survey, wide, request, evaluator)?;
         let needed = plan.degree()[0].max(plan.degree()[1]);
         if evaluator == Evaluator::Direct || needed <= degree {
             return Ok(plan);
@@ -67,7 +75,7 @@ fn with_rounding(
     let given = request.period.is_some() && request.degree.is_some() && between;
     let usable = request.tolerance - rounding;
     // A direct sum leaves out nothing but ghosts; a series needs room for its own bounds.
-    let needed = if evaluator == Evaluator::Direct { share::DROPPED } else { 0.25 };
+    let needed = if evaluator == Evaluator::Direct { share::DROPPED } else { NEEDED };
     if usable < needed * request.tolerance && !given {
         return Err(Error::ToleranceBelowFloor { asked: request.tolerance, floor: rounding / (1.0 - needed) });
     }
