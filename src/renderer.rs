@@ -124,6 +124,10 @@ impl Renderer {
     }
 
     fn compute_spectrum(&mut self, plan: &Plan, series: &Series) -> Result<()> {
+        if let Some(modes) = &series.modes {
+            let terms = self.runner.run("modes", || convert::terms(series, modes));
+            return self.spectrum.upload(&series.counts, &terms);
+        }
         let parts = &series.groups;
         let (mut spectral, mut sums) = (Vec::new(), Vec::new());
         for group in parts {

@@ -124,6 +124,19 @@ impl Stages {
     }
 }
 
+impl Stages {
+    /// Lets one stage have some of the milliseconds of another.
+    fn shift(&mut self, from: &str, to: &str, milliseconds: f64) {
+        for (stage, wall) in &mut self.0 {
+            match stage {
+                stage if *stage == from => *wall = (*wall - milliseconds).max(0.0),
+                stage if *stage == to => *wall += milliseconds,
+                _ => {}
+            }
+        }
+    }
+}
+
 /// The device and what renders on it, made once for however many photos.
 pub struct Computer {
     device: Rc<Device>,
@@ -236,8 +249,11 @@ impl<'a> Job<'a> {
     fn draw(&mut self, renderer: &mut Renderer, planned: &Planned, wanted: Wanted) -> Result<Pending> {
         let (frame, settings) = (self.photo.frame, &self.settings);
         self.stages.time("spectrum", || renderer.set_scene(&planned.plan))?;
+        // What the plan has computed of the spectrum is the spectrum's.
+        let computed = planned.plan.spectrum_milliseconds();
+        self.stages.shift("plan", "spectrum", computed);
         self.passes = renderer.take_times();
-        let spectrum = milliseconds(&self.passes);
+        let spectrum = computed + milliseconds(&self.passes);
         if wanted.glare {
             self.glare = Some(self.stages.time("glare", || renderer.glare(frame, settings))?);
         }

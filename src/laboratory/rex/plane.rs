@@ -137,6 +137,7 @@ impl Scene {
                 period: self.period * canvas.scale,
                 counts: vec![self.degree[1] + 1; self.degree[0] as usize + 1].into(),
                 groups: vec![group],
+                modes: None,
                 lattice: None,
             }),
         };
