@@ -89,8 +89,8 @@ impl<'a> Study<'a> {
         let timings = self.bench.time(&arms, watch)?;
         let mut points = Vec::new();
         for ((asked, plan), timing) in plans.iter().zip(indices.iter().map(|&index| &timings[index])) {
-            self.bench.renderer.set_scene(plan)?;
-            let field = self.bench.renderer.probe(frame, &self.sample.pixels)?;
+            self.bench.renderer.field.set_scene(plan)?;
+            let field = self.bench.renderer.field.probe(frame, &self.sample.pixels)?;
             let quality = self.sample.judge(&field);
             points.push(Point::planned(sweep, frame, *asked, plan).with_quality(&quality).with_timing(timing));
         }
