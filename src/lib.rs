@@ -14,7 +14,8 @@
 //! | [`scene`] | photo → lights → ghosts; presets and scene files |
 //! | [`look`] | everything that a person sets: from options, from a scene file, or by hand |
 //! | [`series`] | bells, their Fourier coefficients and their tails, in f64 |
-//! | [`plan`] | ghosts, picture, tolerance → period, degree, kept terms, evaluator, predicted error |
+//! | [`problem`] | ghosts and picture, as one thing that never changes |
+//! | [`plan`] | problem, tolerance → period, degree, kept terms, evaluator, predicted error |
 //! | [`gpu`] | the plan's tables and passes on OpenGL 4.3; the only folder with `unsafe` |
 //! | [`renderer`] | the main path: spectrum → field → normalise → composite |
 //! | [`mod@reference`] | the definition of the field in f64, by direct sum and by direct series |
@@ -66,6 +67,7 @@ pub mod panics;
 pub mod photo;
 pub mod plan;
 mod printable;
+pub mod problem;
 pub mod reference;
 pub mod renderer;
 pub mod scene;

@@ -1,13 +1,14 @@
 //! The main path: spectrum → field → normalise → composite.
 //!
 //! ```no_run
-//! # use vglare::{frame::Frame, gpu::{Backend, Device}, plan::{plan, Request}, renderer::{Renderer, Settings}};
+//! # use vglare::{frame::Frame, gpu::{Backend, Device}, plan::{plan, Request}, problem::Problem};
+//! # use vglare::renderer::{Renderer, Settings};
 //! # let (ghosts, frame) = (Vec::new(), Frame::full(1920, 1080));
 //! # let mut pixels = vec![[0.0; 4]; frame.window.pixels()];
 //! let device = Device::open(&Backend::ALL)?;
-//! let plan = plan(&ghosts, &Request::new(frame, 1e-3))?;
+//! let plan = plan(&Problem::new(ghosts, frame), &Request::new(1e-3))?;
 //! let mut renderer = Renderer::new(&device)?;
-//! renderer.set_scene(&ghosts, &plan)?; // the spectrum, once
+//! renderer.set_scene(&plan)?; // the spectrum, once
 //! renderer.composite(frame, &mut pixels, &Settings::default())?;
 //! # Ok::<(), vglare::Error>(())
 //! ```
@@ -22,8 +23,6 @@ mod view;
 
 use std::rc::Rc;
 
-use rayon::prelude::*;
-
 use crate::frame::{Frame, Window};
 use crate::gpu::composite::{Composite, CompositePass};
 use crate::gpu::copy::CopyPass;
@@ -35,8 +34,7 @@ use crate::gpu::runner::Runner;
 use crate::gpu::spectrum::{Coefficients, Ghosts, Spectrum, SpectrumGroup};
 use crate::gpu::view::ViewPass;
 use crate::gpu::{Device, PassTime};
-use crate::plan::{Evaluator, Group, Plan, Transform};
-use crate::scene::Ghost;
+use crate::plan::{Evaluator, Plan, Precision, Series, Transform};
 use crate::{Error, Result};
 
 use exchange::Exchange;
@@ -60,13 +58,11 @@ pub struct Renderer {
     view: ViewPass,
     mask: MaskPass,
     exchange: Exchange,
-    scene: Option<(Vec<Ghost>, Plan)>,
+    scene: Option<Plan>,
     /// The frame whose field is held, if any.
     held: Option<Frame>,
     /// The field whose range is on the device, by what tells it from any other.
     ranged: Option<u64>,
-    /// Room for the next scene's ghosts.
-    room: Vec<Ghost>,
     tile_pixels: usize,
 }
 
@@ -91,7 +87,6 @@ impl Renderer {
             scene: None,
             held: None,
             ranged: None,
-            room: Vec::new(),
             tile_pixels: tiles::PIXELS,
             runner,
         })
@@ -101,37 +96,47 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Error::Gl`] where the driver refuses.
-    pub fn set_scene(&mut self, ghosts: &[Ghost], plan: &Plan) -> Result<()> {
-        if self.scene.as_ref().is_some_and(|(old, by)| by == plan && old == ghosts) {
+    pub fn set_scene(&mut self, plan: &Plan) -> Result<()> {
+        if self.scene.as_ref().is_some_and(|old| old == plan) {
             return Ok(());
         }
         self.forget_scene();
-        if plan.evaluator == Evaluator::Direct || plan.summed() > 0 {
-            let (direct, shapes) = convert::direct_ghosts(ghosts, plan);
-            self.evaluators.set_ghosts(&self.runner, &direct, &shapes)?;
+        if plan.series().is_none() || plan.summed() > 0 {
+            self.upload_summed(plan)?;
         }
-        if plan.evaluator != Evaluator::Direct {
-            self.compute_spectrum(ghosts, plan)?;
+        if let Some(series) = plan.series() {
+            self.compute_spectrum(plan, series)?;
         }
         self.runner.device().check("computing the spectrum")?;
-        self.keep_scene(ghosts, plan);
+        self.scene = Some(plan.clone());
         Ok(())
     }
 
-    fn compute_spectrum(&mut self, ghosts: &[Ghost], plan: &Plan) -> Result<()> {
-        let parts: Vec<&Group> = plan.groups.iter().filter(|group| group.transform != Transform::Direct).collect();
+    /// Uploads the ghosts that are summed directly, in the floats that the plan asks for.
+    fn upload_summed(&mut self, plan: &Plan) -> Result<()> {
+        if plan.precision == Precision::Double {
+            let (direct, shapes) = convert::direct_ghosts(plan, convert::double_ghost);
+            return self.evaluators.set_ghosts(&self.runner, &direct, &shapes);
+        }
+        let (direct, shapes) = convert::direct_ghosts(plan, convert::single_ghost);
+        let single: Vec<[f32; 4]> = shapes.iter().map(|row| row.map(|x| x as f32)).collect();
+        self.evaluators.set_ghosts(&self.runner, &direct, &single)
+    }
+
+    fn compute_spectrum(&mut self, plan: &Plan, series: &Series) -> Result<()> {
+        let parts = &series.groups;
         let (mut spectral, mut sums) = (Vec::new(), Vec::new());
-        for group in &parts {
+        for group in parts {
             let (each, summed) = match &group.transform {
                 Transform::Gather(cells) => {
-                    (Vec::new(), self.runner.run("moments", || convert::gathered(ghosts, plan, group, cells)))
+                    (Vec::new(), self.runner.run("moments", || convert::gathered(plan, series.period, group, cells)))
                 }
-                _ => (convert::spectral_ghosts(ghosts, plan, &group.members), Vec::new()),
+                _ => (convert::spectral_ghosts(plan, series.period, &group.members), Vec::new()),
             };
             spectral.push(each);
             sums.push(summed);
         }
-        let tables: Vec<_> = parts.iter().map(|group| convert::table(plan, group)).collect();
+        let tables: Vec<_> = parts.iter().map(|group| convert::table(series, group)).collect();
         let groups = parts.iter().enumerate().map(|(k, group)| SpectrumGroup {
             coefficients: match &tables[k] {
                 Some(table) => Coefficients::Table(table),
@@ -143,14 +148,7 @@ impl Renderer {
             },
             degree: group.degree,
         });
-        self.spectrum.compute(&self.runner, &plan.counts, &groups.collect::<Vec<_>>())
-    }
-
-    /// Keeps what [`Renderer::set_scene`] compares with.
-    fn keep_scene(&mut self, ghosts: &[Ghost], plan: &Plan) {
-        let mut kept = std::mem::take(&mut self.room);
-        ghosts.par_iter().cloned().collect_into_vec(&mut kept);
-        self.scene = Some((kept, plan.clone()));
+        self.spectrum.compute(&self.runner, &series.counts, &groups.collect::<Vec<_>>())
     }
 
     /// Computes the spectrum of ghosts whose bell is a table, whatever bells they name: for each mode that the plan
@@ -159,17 +157,17 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Error::Gl`] where the driver refuses.
-    pub(crate) fn set_tabulated(&mut self, ghosts: &[Ghost], plan: &Plan, table: &[[f32; 4]]) -> Result<()> {
+    pub(crate) fn set_tabulated(&mut self, plan: &Plan, table: &[[f32; 4]]) -> Result<()> {
         self.forget_scene();
-        let everyone: Vec<u32> = (0..ghosts.len() as u32).collect();
+        let everyone: Vec<u32> = (0..plan.problem().ghosts().len() as u32).collect();
         let group = SpectrumGroup {
             coefficients: Coefficients::Table(table),
-            ghosts: Ghosts::Each(&convert::spectral_ghosts(ghosts, plan, &everyone)),
-            degree: plan.degree,
+            ghosts: Ghosts::Each(&convert::spectral_ghosts(plan, plan.period(), &everyone)),
+            degree: plan.degree(),
         };
-        self.spectrum.compute(&self.runner, &plan.counts, &[group])?;
+        self.spectrum.compute(&self.runner, plan.counts(), &[group])?;
         self.runner.device().check("computing the spectrum")?;
-        self.keep_scene(ghosts, plan);
+        self.scene = Some(plan.clone());
         Ok(())
     }
 
@@ -238,10 +236,7 @@ impl Renderer {
 
     /// Forgets the scene, so that the next [`Renderer::set_scene`] computes its spectrum anew.
     pub fn forget_scene(&mut self) {
-        self.held = None;
-        if let Some((ghosts, _)) = self.scene.take() {
-            self.room = ghosts;
-        }
+        (self.held, self.scene) = (None, None);
     }
 
     /// The glare alone, as [`Renderer::composite`] would add it, row by row from the top; alpha is 1.
@@ -338,14 +333,14 @@ impl Renderer {
     }
 
     fn plan(&self) -> Result<&Plan> {
-        self.scene.as_ref().map(|(_, plan)| plan).ok_or_else(|| Error::Gl("the renderer has no scene".into()))
+        self.scene.as_ref().ok_or_else(|| Error::Gl("the renderer has no scene".into()))
     }
 
     fn tiles(&self, window: Window) -> Vec<Window> {
         let limits = &self.runner.device().info().limits;
         let side = limits.texture_size.min(limits.viewport[0]).min(limits.viewport[1]);
         // Drivers reset themselves when one draw takes seconds, and `direct` can make that of a tile of any size.
-        let bells = self.scene.as_ref().map_or(0, |(_, plan)| plan.summed()).max(1);
+        let bells = self.scene.as_ref().map_or(0, Plan::summed).max(1);
         tiles::split(window, side, self.tile_pixels.min((tiles::BELLS / bells).max(1)))
     }
 
@@ -383,26 +378,23 @@ impl Renderer {
 
     /// Readies the plan's evaluator for a tile.
     fn evaluate(&mut self, frame: Frame, tile: Window) -> Result<Source> {
-        let Some((_, plan)) = &self.scene else { return Err(Error::Gl("the renderer has no scene".into())) };
+        let Some(plan) = &self.scene else { return Err(Error::Gl("the renderer has no scene".into())) };
         let (runner, spectrum, evaluators) = (&self.runner, &self.spectrum, &mut self.evaluators);
-        if plan.evaluator == Evaluator::Direct || plan.summed() > 0 {
+        if plan.series().is_none() || plan.summed() > 0 {
             evaluators.direct([tile.x, tile.y], frame)?;
         }
-        match plan.evaluator {
-            Evaluator::Direct => {}
-            Evaluator::Series | Evaluator::Rows => {
-                let columns = tiles::phases(tile.width, |i| frame.x(f64::from(tile.x) + i), plan.period.x);
-                let rows = tiles::phases(tile.height, |j| frame.y(f64::from(tile.y) + j), plan.period.y);
-                if plan.evaluator == Evaluator::Series {
-                    evaluators.series(runner, [&columns, &rows], spectrum)?;
-                } else {
-                    evaluators.rows(runner, [&columns, &rows], spectrum)?;
+        if let Some(series) = plan.series() {
+            let columns = || tiles::phases(tile.width, |i| frame.x(f64::from(tile.x) + i), series.period.x);
+            let rows = || tiles::phases(tile.height, |j| frame.y(f64::from(tile.y) + j), series.period.y);
+            match (series.evaluator, &series.lattice) {
+                (Evaluator::Direct, _) => {}
+                (Evaluator::Series, _) => evaluators.series(runner, [&columns(), &rows()], spectrum)?,
+                (Evaluator::Rows, _) => evaluators.rows(runner, [&columns(), &rows()], spectrum)?,
+                (Evaluator::Grid, Some(lattice)) => {
+                    let nodes = tiles::Nodes::new(lattice, series.period, frame, tile);
+                    evaluators.grid(runner, &nodes.tile(), spectrum)?;
                 }
-            }
-            Evaluator::Grid => {
-                let lattice = plan.lattice.as_ref().ok_or_else(|| Error::Plan("a grid without a lattice".into()))?;
-                let nodes = tiles::Nodes::new(lattice, plan.period, frame, tile);
-                evaluators.grid(runner, &nodes.tile(), spectrum)?;
+                (Evaluator::Grid, None) => return Err(Error::Plan("a grid without a lattice".into())),
             }
         }
         Ok(convert::source(plan, evaluators.many()))

@@ -23,6 +23,7 @@ use crate::certificate::{Certificate, Verify};
 use crate::gpu::{Device, Info, PassTime};
 use crate::look::{Gathered, Look};
 use crate::photo::{self, BadPixels, Photo};
+use crate::problem::Problem;
 use crate::renderer::{Pending, Renderer, Settings};
 use crate::{Error, Result};
 
@@ -190,11 +191,11 @@ impl<'a> Job<'a> {
     /// Plans, computes the spectrum, composites onto the photo and measures.
     fn render(&mut self, computer: &mut Computer, wanted: Wanted, watch: &impl Watch) -> Result<()> {
         begin(watch, "planning")?;
-        let (look, frame, ghosts) = (self.look, self.photo.frame, &self.scene.ghosts);
+        let problem = Problem::new(self.scene.ghosts.clone(), self.photo.frame);
         let device = computer.device.info();
         let planned = self.stages.time("plan", || {
             let known = if wanted.calibrated { Known::of(device) } else { Known::default() };
-            plan(&look.accuracy, ghosts, frame, Some(device), known)
+            plan(&self.look.accuracy, &problem, Some(device), known)
         })?;
         if !std::mem::replace(&mut computer.warned, true) {
             self.warnings.extend(planned.warnings.iter().cloned());
@@ -234,7 +235,7 @@ impl<'a> Job<'a> {
     /// Draws the picture, some of which may still be on its way back then.
     fn draw(&mut self, renderer: &mut Renderer, planned: &Planned, wanted: Wanted) -> Result<Pending> {
         let (frame, settings) = (self.photo.frame, &self.settings);
-        self.stages.time("spectrum", || renderer.set_scene(&self.scene.ghosts, &planned.plan))?;
+        self.stages.time("spectrum", || renderer.set_scene(&planned.plan))?;
         self.passes = renderer.take_times();
         let spectrum = milliseconds(&self.passes);
         if wanted.glare {
@@ -269,15 +270,13 @@ impl<'a> Job<'a> {
         verify: Verify,
         watch: &impl Watch,
     ) -> Result<()> {
-        let (plan, ghosts, frame) = (&planned.plan, &self.scene.ghosts, self.photo.frame);
-        // Of a budget or a raised floor, what was reached; otherwise what was asked.
-        let asked = plan.tolerance;
+        let plan = &planned.plan;
         begin(watch, "measuring the error")?;
         let certificate = self.stages.time("certify", || match verify {
-            Verify::Sample => Certificate::measure(renderer, ghosts, plan, frame, asked),
+            Verify::Sample => Certificate::measure(renderer, plan),
             Verify::Full => {
-                watch.measured(frame.window.pixels());
-                Certificate::measure_all(renderer, ghosts, plan, frame, asked, |pixels| watch.advance(pixels))
+                watch.measured(self.photo.frame.window.pixels());
+                Certificate::measure_all(renderer, plan, |pixels| watch.advance(pixels))
             }
         })?;
         if let Err(error) = certificate.check() {

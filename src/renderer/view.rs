@@ -160,7 +160,7 @@ impl Renderer {
 
     /// The constant term of the field's series, RGB: its mean over a period. None where the plan has no series.
     pub fn constant_term(&self) -> Option<[f64; 3]> {
-        let (_, plan) = self.scene.as_ref().filter(|(_, plan)| plan.terms > 0)?;
+        let plan = self.scene.as_ref().filter(|plan| plan.series().is_some())?;
         let terms = self.spectrum.read();
         Some([0, 1, 2].map(|colour| f64::from(terms[colour][0]) * plan.scale[colour]))
     }

@@ -16,6 +16,7 @@ use crate::gpu::{Device, Region, Screen};
 use crate::job::{self, Known};
 use crate::look::Gathered;
 use crate::plan::Plan;
+use crate::problem::Problem;
 use crate::renderer::{Mask, Part, Renderer, Settings, View};
 use crate::scene::{Emission, Goal};
 use crate::{Error, Result};
@@ -203,10 +204,11 @@ impl Stage {
         let Some(scene) = &self.made.scene else { return Ok(()) };
         let started = Instant::now();
         let device = self.renderer.device().info();
-        let planned = job::plan(&look.accuracy, &scene.ghosts, frame, Some(device), self.known.clone())?;
+        let problem = Problem::new(scene.ghosts.clone(), frame);
+        let planned = job::plan(&look.accuracy, &problem, Some(device), self.known.clone())?;
         self.times.plan = started.elapsed().as_secs_f64() * 1e3;
         let started = Instant::now();
-        self.renderer.set_scene(&scene.ghosts, &planned.plan)?;
+        self.renderer.set_scene(&planned.plan)?;
         self.times.spectrum = self.elapsed(started);
         self.counts.spectra += 1;
         self.made.constant = None;
@@ -286,13 +288,13 @@ impl Stage {
     /// [`crate::Error::Gl`] where the driver refuses.
     pub fn study(&mut self, document: &Document, moving: bool, context: &egui::Context) -> Result<(bool, bool)> {
         let news = self.study.take_in(context)?;
-        let (Some(plan), Some(scene), Some(_)) = (&self.plan, &self.made.scene, &self.made.look) else {
+        let (Some(plan), Some(_), Some(_)) = (&self.plan, &self.made.scene, &self.made.look) else {
             return Ok((news, false));
         };
-        let picture = Picture { number: self.counts.spectra, ghosts: &scene.ghosts, plan, frame: document.frame };
+        let picture = Picture { number: self.counts.spectra, plan };
         self.study.forget_others(picture.number);
         let wanted = &document.viewing.wanted;
-        if self.made.preview || !self.study.is_due(picture.number, wanted, picture.frame) {
+        if self.made.preview || !self.study.is_due(picture.number, wanted, picture.plan.problem().frame()) {
             return Ok((news, false));
         }
         if moving {

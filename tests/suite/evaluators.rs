@@ -3,13 +3,13 @@
 use vglare::Error;
 use vglare::frame::Frame;
 use vglare::gpu::Backend;
-use vglare::plan::{Evaluator, Plan, Request, plan};
+use vglare::plan::{Evaluator, Plan, Request};
 use vglare::reference::direct_at;
 use vglare::renderer::Renderer;
 use vglare::scene::Ghost;
 
 use crate::support::check::{Worst, within};
-use crate::support::{glare, on_each_backend, plan_with, rgb, scenes};
+use crate::support::{glare, on_each_backend, plan, plan_with, rgb, scenes};
 use vglare::renderer::Settings;
 
 const TOLERANCES: [f64; 3] = [1e-2, 1e-3, 1e-4];
@@ -18,7 +18,6 @@ const TOLERANCES: [f64; 3] = [1e-2, 1e-3, 1e-4];
 struct Case {
     name: String,
     frame: Frame,
-    ghosts: Vec<Ghost>,
     plan: Plan,
     pixels: Vec<[i32; 2]>,
     exact: Vec<[f64; 3]>,
@@ -29,8 +28,8 @@ impl Case {
     /// tolerance that can be had.
     fn new(name: &str, ghosts: &[Ghost], frame: Frame, tolerance: f64, evaluator: Evaluator) -> Option<Self> {
         let name = format!("{evaluator}, {name}, {tolerance:e}");
-        let request = Request { evaluator: Some(evaluator), ..Request::new(frame, tolerance) };
-        let plan = match plan(ghosts, &request) {
+        let request = Request { evaluator: Some(evaluator), ..Request::new(tolerance) };
+        let plan = match plan(ghosts, frame, &request) {
             Ok(plan) => plan,
             Err(Error::ToleranceBelowFloor { asked, floor }) => {
                 println!("{name}: the floor is {floor:.1e}");
@@ -43,12 +42,12 @@ impl Case {
         assert!(plan.predicted.total() <= tolerance, "{name}: {:?}", plan.predicted);
         let pixels = scenes::probes(7, ghosts, &plan, frame);
         let exact = direct_at(ghosts, &scenes::positions(frame, &pixels));
-        Some(Self { name, frame, ghosts: ghosts.to_vec(), plan, pixels, exact })
+        Some(Self { name, frame, plan, pixels, exact })
     }
 
     /// The error at the probes, relative to the largest value.
     fn measure(&self, backend: Backend, renderer: &mut Renderer) -> f64 {
-        renderer.set_scene(&self.ghosts, &self.plan).unwrap();
+        renderer.set_scene(&self.plan).unwrap();
         let actual = renderer.probe(self.frame, &self.pixels).unwrap();
         let name = format!("{backend}, {}, predicted {:?}", self.name, self.plan.predicted);
         within(self.plan.predicted.total(), &name, &self.pixels, &self.exact, &actual).relative
@@ -79,7 +78,7 @@ fn keep_the_promise(width: u32, height: u32, counts: &[usize], tolerances: &[f64
     for evaluator in Evaluator::ALL {
         let (mut error, mut share) = (Worst::default(), Worst::default());
         for (case, &relative) in measured.iter().flat_map(|errors| cases.iter().zip(errors)) {
-            if case.plan.evaluator == evaluator {
+            if case.plan.evaluator() == evaluator {
                 error.take(relative, || case.name.clone());
                 share.take(relative / case.plan.predicted.total().max(f64::MIN_POSITIVE), || case.name.clone());
             }
@@ -132,7 +131,7 @@ fn the_glare_of_small_pictures_keeps_the_promise_at_every_pixel() {
         let worst = on_each_backend(|backend, renderer| {
             Evaluator::ALL.map(|evaluator| {
                 let plan = plan_with(&ghosts, frame, tolerance, evaluator);
-                let actual = rgb(&glare(renderer, &ghosts, &plan, frame));
+                let actual = rgb(&glare(renderer, &plan, frame));
                 let name = format!("{backend}, {evaluator}, {width}x{height}");
                 within(plan.predicted.total(), &name, &pixels, &exact, &actual).relative
             })
@@ -151,7 +150,7 @@ fn the_backends_agree() {
     let results = on_each_backend(|_, renderer| {
         Evaluator::ALL.map(|evaluator| {
             let plan = plan_with(&ghosts, frame, 1e-3, evaluator);
-            let alone = rgb(&glare(renderer, &ghosts, &plan, frame));
+            let alone = rgb(&glare(renderer, &plan, frame));
             let mut picture: Vec<[f32; 4]> =
                 (0..frame.window.pixels()).map(|i| [i as f32 * 1e-3, 0.5, 2.0, 1.0]).collect();
             renderer.composite(frame, &mut picture, &Settings::default()).unwrap();
@@ -184,12 +183,12 @@ fn what_the_software_renderer_cannot_sum_is_refused() {
     let direct = plan_with(&ghosts, frame, 1e-2, Evaluator::Direct);
     let few = &ghosts[..10];
     let degree = Some([299, 299]);
-    let request = Request { evaluator: Some(Evaluator::Series), degree, ..Request::new(frame, 1e-2) };
-    let series = plan(few, &request).unwrap();
+    let request = Request { evaluator: Some(Evaluator::Series), degree, ..Request::new(1e-2) };
+    let series = plan(few, frame, &request).unwrap();
     on_each_backend(|_, renderer| {
-        let refusal = renderer.set_scene(&ghosts, &direct).unwrap_err().to_string();
+        let refusal = renderer.set_scene(&direct).unwrap_err().to_string();
         assert!(refusal.contains("500000 ghosts"), "{refusal}");
-        renderer.set_scene(few, &series).unwrap();
+        renderer.set_scene(&series).unwrap();
         let refusal = renderer.probe(frame, &[[0, 0]]).unwrap_err().to_string();
         assert!(refusal.contains("90000 terms"), "{refusal}");
     });

@@ -33,7 +33,7 @@ impl Scene {
     }
 
     fn frames(&self, renderer: &mut Renderer) -> Frames {
-        renderer.set_scene(&self.ghosts, &self.plan).unwrap();
+        renderer.set_scene(&self.plan).unwrap();
         let settings = Settings::default();
         let mut picture: Vec<[f32; 4]> = (0..self.frame.window.pixels()).map(|i| [0.1, i as f32, 3.0, 0.5]).collect();
         // The composite comes first: the very first thing that a fresh renderer draws.
@@ -71,20 +71,20 @@ fn a_fresh_renderer_may_begin_with_anything() {
         let (frame, settings) = (scene.frame, Settings::default());
         let expected = on_backend(Backend::Egl, |renderer| scene.frames(renderer));
         on_backend(Backend::Egl, |renderer| {
-            renderer.set_scene(&scene.ghosts, &scene.plan).unwrap();
+            renderer.set_scene(&scene.plan).unwrap();
             assert_eq!(bits(&renderer.glare(frame, &settings).unwrap()), expected.glare, "{evaluator}: glare");
         });
         on_backend(Backend::Egl, |renderer| {
-            renderer.set_scene(&scene.ghosts, &scene.plan).unwrap();
+            renderer.set_scene(&scene.plan).unwrap();
             let minmax = Settings { normalize: Normalize::Minmax, ..settings };
             assert_eq!(bits(&renderer.glare(frame, &minmax).unwrap()), expected.stretched, "{evaluator}: minmax");
         });
         on_backend(Backend::Egl, |renderer| {
-            renderer.set_scene(&scene.ghosts, &scene.plan).unwrap();
+            renderer.set_scene(&scene.plan).unwrap();
             assert_eq!(renderer.range(frame).unwrap().map(f32::to_bits), expected.range, "{evaluator}: range");
         });
         on_backend(Backend::Egl, |renderer| {
-            renderer.set_scene(&scene.ghosts, &scene.plan).unwrap();
+            renderer.set_scene(&scene.plan).unwrap();
             let probe = renderer.probe(frame, &[[0, 0]]).unwrap();
             assert_eq!(probe[0].map(f64::to_bits), expected.probe[0], "{evaluator}: probe");
         });
@@ -102,12 +102,12 @@ fn other_scenes_sizes_and_evaluators_in_between_leave_no_trace() {
     on_each_backend(|backend, renderer| {
         let before: Vec<Frames> = scenes.iter().map(|scene| scene.frames(renderer)).collect();
         for (index, scene) in scenes.iter().enumerate().rev() {
-            let evaluator = scene.plan.evaluator;
+            let evaluator = scene.plan.evaluator();
             assert!(scene.frames(renderer) == before[index], "{backend}, {evaluator}: backwards");
         }
         for step in [3, 5] {
             for index in (0..scenes.len()).map(|k| k * step % scenes.len()) {
-                let evaluator = scenes[index].plan.evaluator;
+                let evaluator = scenes[index].plan.evaluator();
                 assert!(scenes[index].frames(renderer) == before[index], "{backend}, {evaluator}: by {step}s");
             }
         }
@@ -126,23 +126,23 @@ fn the_same_scene_keeps_its_spectrum_and_another_does_not() {
     on_each_backend(|_, renderer| {
         let mut ghosts = ghosts.clone();
         renderer.set_timing(true);
-        renderer.set_scene(&ghosts, &plan).unwrap();
-        assert_eq!(spectra(renderer), plan.groups.len(), "one dispatch a group");
-        renderer.set_scene(&ghosts, &plan).unwrap();
+        renderer.set_scene(&plan).unwrap();
+        assert_eq!(spectra(renderer), plan.groups().count(), "one dispatch a group");
+        renderer.set_scene(&plan).unwrap();
         renderer.glare(frame, &Settings::default()).unwrap();
         renderer.glare(frame, &Settings { strength: 2.0, ..Settings::default() }).unwrap();
         assert_eq!(spectra(renderer), 0, "nothing changed that the spectrum depends on");
 
         ghosts[3].radiance[2] *= 1.5;
-        renderer.set_scene(&ghosts, &plan).unwrap();
-        assert_eq!(spectra(renderer), plan.groups.len(), "a ghost changed");
+        renderer.set_scene(&plan).unwrap();
+        assert_eq!(spectra(renderer), plan.groups().count(), "a ghost changed");
         renderer.forget_scene();
-        renderer.set_scene(&ghosts, &plan).unwrap();
-        assert_eq!(spectra(renderer), plan.groups.len(), "it was forgotten");
+        renderer.set_scene(&plan).unwrap();
+        assert_eq!(spectra(renderer), plan.groups().count(), "it was forgotten");
     });
     // A ghost that changes a little changes the picture, too.
-    let before = on_backend(Backend::Egl, |renderer| crate::support::glare(renderer, &ghosts, &plan, frame));
+    let before = on_backend(Backend::Egl, |renderer| crate::support::glare(renderer, &plan, frame));
     ghosts[3].center.x += 0.01;
-    let after = on_backend(Backend::Egl, |renderer| crate::support::glare(renderer, &ghosts, &plan, frame));
+    let after = on_backend(Backend::Egl, |renderer| crate::support::glare(renderer, &plan, frame));
     assert_ne!(bits(&before), bits(&after));
 }

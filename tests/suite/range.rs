@@ -30,7 +30,7 @@ fn the_range_is_that_of_the_pixels(renderer: &mut Renderer, frame: Frame, tile_p
     for which in 0..if frame.window.pixels() > 100_000 { 2 } else { 4 } {
         let ghosts = ghosts(frame, which);
         let plan = plan_with(&ghosts, frame, 1e-2, if which % 2 == 0 { Evaluator::Grid } else { Evaluator::Rows });
-        let expected = ends(&glare(renderer, &ghosts, &plan, frame));
+        let expected = ends(&glare(renderer, &plan, frame));
         renderer.set_tile_pixels(tile_pixels);
         assert_eq!(renderer.range(frame).unwrap(), expected, "{frame:?}, scene {which}, tiles of {tile_pixels}");
         renderer.set_tile_pixels(4 << 20);
@@ -72,7 +72,7 @@ fn minmax_stretches_to_zero_and_one_and_clamp_clamps() {
     on_each_backend(|_, renderer| {
         for evaluator in Evaluator::ALL {
             let plan = plan_with(&ghosts, frame, 1e-3, evaluator);
-            let plain = glare(renderer, &ghosts, &plan, frame);
+            let plain = glare(renderer, &plan, frame);
             let mut with = |normalize| renderer.glare(frame, &Settings { normalize, ..Settings::default() }).unwrap();
             let [low, high] = ends(&plain);
             assert!(low < -0.5 && high > 2.0, "the scene is beyond 0..1 at both ends: {low} {high}");
@@ -98,7 +98,7 @@ fn a_flat_field_stretches_to_nothing() {
     on_each_backend(|_, renderer| {
         for evaluator in Evaluator::ALL {
             let plan = plan_with(&[], frame, 1e-3, evaluator);
-            renderer.set_scene(&[], &plan).unwrap();
+            renderer.set_scene(&plan).unwrap();
             assert_eq!(renderer.range(frame).unwrap(), [0.0, 0.0]);
             for normalize in [Normalize::None, Normalize::Clamp, Normalize::Minmax] {
                 let pixels = renderer.glare(frame, &Settings { normalize, ..Settings::default() }).unwrap();

@@ -23,7 +23,7 @@ fn every_size_of_a_picture_keeps_the_promise_at_its_own_pixels() {
                 let plan = plan_with(&ghosts(), frame, TOLERANCE, evaluator);
                 let pixels = scenes::probes(1, &ghosts(), &plan, frame);
                 let exact = direct_at(&ghosts(), &scenes::positions(frame, &pixels));
-                renderer.set_scene(&ghosts(), &plan).unwrap();
+                renderer.set_scene(&plan).unwrap();
                 let actual = renderer.probe(frame, &pixels).unwrap();
                 let name = format!("{backend}, {evaluator}, {height}p");
                 within(plan.predicted.total(), &name, &pixels, &exact, &actual);
@@ -41,7 +41,7 @@ fn pixels_that_share_their_centres_agree_across_sizes() {
         for evaluator in Evaluator::ALL {
             let mut look = |frame: Frame, times: i32| {
                 let plan = plan_with(&ghosts(), frame, TOLERANCE, evaluator);
-                renderer.set_scene(&ghosts(), &plan).unwrap();
+                renderer.set_scene(&plan).unwrap();
                 let place = |k: i32| times * k + times / 2;
                 let mine: Vec<_> = pixels.iter().map(|&[i, j]| [place(i), place(j)]).collect();
                 for (&[i, j], &[a, b]) in pixels.iter().zip(&mine) {

@@ -24,7 +24,7 @@ fn tiles_meet_bit_for_bit() {
     let ghosts = scenes::random(8, 30, FRAME);
     on_each_backend(|backend, renderer| {
         for evaluator in Evaluator::ALL {
-            renderer.set_scene(&ghosts, &plan_with(&ghosts, FRAME, 1e-3, evaluator)).unwrap();
+            renderer.set_scene(&plan_with(&ghosts, FRAME, 1e-3, evaluator)).unwrap();
             let whole = pictures(renderer, 4 << 20);
             for tile_pixels in [40, FRAME.window.width as usize, 1000] {
                 let tiled = pictures(renderer, tile_pixels);

@@ -4,11 +4,11 @@ use glam::DVec2;
 use vglare::frame::Frame;
 use vglare::gpu::{Region, Screen};
 use vglare::photo::ToneMap;
-use vglare::plan::{Request, plan};
+use vglare::plan::Request;
 use vglare::renderer::{Mask, Normalize, Part, Renderer, Settings, View};
 use vglare::scene::{Emission, FindOptions, find};
 
-use crate::support::{bits, on_each_backend, scenes};
+use crate::support::{bits, on_each_backend, plan, scenes};
 
 const SURROUND: [f32; 3] = [0.2, 0.4, 0.6];
 
@@ -123,7 +123,7 @@ fn the_wipe_parts_photo_and_picture() {
     let photo = vec![[0.1, 0.1, 0.1, 1.0]; 128];
     let ghosts = [scenes::one([0.0, 0.0], 1.0, [0.5, 0.0, 0.0])];
     on_each_backend(|_, renderer| {
-        renderer.set_scene(&ghosts, &plan(&ghosts, &Request::new(frame, 1e-3)).unwrap()).unwrap();
+        renderer.set_scene(&plan(&ghosts, frame, &Request::new(1e-3)).unwrap()).unwrap();
         renderer.load(frame, &photo).unwrap();
         renderer.draw(frame, &Settings::default()).unwrap();
         let screen = Screen::hidden(renderer.device(), [20, 8]).unwrap();
@@ -149,10 +149,10 @@ fn a_held_field_gives_the_same_picture() {
     let settings = Settings { strength: 1.7, ..Settings::default() };
     on_each_backend(|_, renderer| {
         let mut pictures = Vec::new();
-        let by = |ghosts: &[_]| plan(ghosts, &Request::new(frame, 1e-3)).unwrap();
+        let by = |ghosts: &[_]| plan(ghosts, frame, &Request::new(1e-3)).unwrap();
         renderer.load(frame, &photo).unwrap();
         for (ghosts, hold) in [(&ghosts, false), (&ghosts, true), (&other, false)] {
-            renderer.set_scene(ghosts, &by(ghosts)).unwrap();
+            renderer.set_scene(&by(ghosts)).unwrap();
             if hold {
                 renderer.hold_field(frame).unwrap();
             }
@@ -164,7 +164,7 @@ fn a_held_field_gives_the_same_picture() {
         assert_eq!(bits(&pictures[0]), bits(&pictures[1]));
         // What takes too long for one draw is held by several.
         renderer.set_tile_pixels(100);
-        renderer.set_scene(&ghosts, &by(&ghosts)).unwrap();
+        renderer.set_scene(&by(&ghosts)).unwrap();
         renderer.hold_field(frame).unwrap();
         renderer.set_tile_pixels(usize::MAX);
         renderer.draw(frame, &settings).unwrap();
@@ -184,7 +184,7 @@ fn a_mixed_view_is_that_of_the_picture() {
     on_each_backend(|_, renderer| {
         renderer.load(frame, &photo).unwrap();
         for ghosts in &scenes {
-            renderer.set_scene(ghosts, &plan(ghosts, &Request::new(frame, 1e-3)).unwrap()).unwrap();
+            renderer.set_scene(&plan(ghosts, frame, &Request::new(1e-3)).unwrap()).unwrap();
             for normalize in [Normalize::None, Normalize::Minmax] {
                 for (part, wipe) in
                     [(Part::Picture, 0.0), (Part::Picture, 11.0), (Part::Glare, 0.0), (Part::Glare, 9.0)]
@@ -224,7 +224,7 @@ fn a_coarse_field_lies_where_the_fine_one_does() {
         for pitch in [0.5, 1.0, 1.7] {
             let screen = Screen::hidden(renderer.device(), [(121.0 / pitch) as u32, (80.0 / pitch) as u32]).unwrap();
             let [fine, rough] = [frame, coarse].map(|frame| {
-                renderer.set_scene(&ghosts, &plan(&ghosts, &Request::new(frame, 1e-3)).unwrap()).unwrap();
+                renderer.set_scene(&plan(&ghosts, frame, &Request::new(1e-3)).unwrap()).unwrap();
                 let (view, settings) = (View { pitch, ..view() }, Settings::default());
                 renderer.view_mixed(frame, &settings, Part::Picture, &view, &screen, screen.whole()).unwrap();
                 screen.read()

@@ -234,7 +234,7 @@ fn line(out: &mut dyn Write, job: &Job<'_>) -> io::Result<()> {
     }
     write!(out, "{} ghosts, ", scene.ghosts.len())?;
     if let (Some(planned), Some(error)) = (&job.work.planned, &job.work.certificate) {
-        write!(out, "{}, error {:.1e}, ", planned.plan.evaluator, error.measured)?;
+        write!(out, "{}, error {:.1e}, ", planned.plan.evaluator(), error.measured)?;
     }
     let total: f64 = job.work.stages.0.iter().map(|(_, ms)| ms).sum();
     writeln!(out, "{:.2} s", total * 1e-3)?;

@@ -17,6 +17,7 @@ use crate::options::FindArgs;
 use crate::options::ReadArgs;
 use crate::options::SceneArgs;
 use crate::plan::{CostModel, Plan};
+use crate::problem::Problem;
 use crate::terminal::stderr::warn;
 use crate::terminal::stdout;
 use crate::{Result, photo};
@@ -82,7 +83,8 @@ pub fn run(args: &Args) -> Result<()> {
     let frame = args.size.map_or(photo.frame, |[width, height]| photo.frame.resized(width, height));
     let device = Device::open(args.accuracy.backend.backends()).ok();
     let info = device.as_ref().map(|device| device.info());
-    let planned = job::plan(&look.accuracy, &scene.ghosts, frame, info, args.accuracy.known(info))?;
+    let planned =
+        job::plan(&look.accuracy, &Problem::new(scene.ghosts.clone(), frame), info, args.accuracy.known(info))?;
     warn(&planned.warnings);
     let budget = look.accuracy.goal.budget();
     let told = Told { photo: &args.photo, frame, look: &look, scene: &scene, planned: &planned, info, budget };

@@ -11,6 +11,7 @@ use crate::Result;
 use crate::frame::Frame;
 use crate::measure::interleave;
 use crate::plan::{Evaluator, Lattice, Plan, Request, Transform, plan};
+use crate::problem::Problem;
 use crate::scene::Ghost;
 
 /// The bar of the default path: a spectrum and a frame, in copies.
@@ -28,9 +29,9 @@ pub(super) fn default_path(stage: &Stage, report: &mut Report) -> Result<()> {
 }
 
 fn grid(stage: &Stage, report: &mut Report, ghosts: &[Ghost]) -> Result<()> {
-    let request = Request { evaluator: Some(Evaluator::Grid), ..Request::new(stage.frame, TOLERANCE) };
-    let plan = plan(ghosts, &request)?;
-    let mut actor = stage.actor(stage.frame, ghosts, &plan)?;
+    let request = Request { evaluator: Some(Evaluator::Grid), ..Request::new(TOLERANCE) };
+    let plan = plan(&Problem::new(ghosts, stage.frame), &request)?;
+    let mut actor = stage.actor(&plan)?;
 
     let shared = RefCell::new(&mut actor);
     let arms: [Arm<'_>; 4] = [
@@ -60,7 +61,7 @@ fn grid(stage: &Stage, report: &mut Report, ghosts: &[Ghost]) -> Result<()> {
 /// `rows` against `series`, which does the same sum without taking it apart.
 pub(super) fn rows_and_series(stage: &Stage, report: &mut Report) -> Result<()> {
     let ghosts = scenes::scattered(45, 0.3, stage.frame);
-    let actor = |evaluator| stage.actor(stage.frame, &ghosts, &by_hand(&ghosts, stage.frame, evaluator)?);
+    let actor = |evaluator| stage.actor(&by_hand(&ghosts, stage.frame, evaluator)?);
     let (mut rows, mut series) = (actor(Evaluator::Rows)?, actor(Evaluator::Series)?);
     let arms: [Arm<'_>; 2] = [&mut || rows.frame(), &mut || series.frame()];
     let [rows, series] = interleave(stage.rounds, arms)?;
@@ -77,22 +78,21 @@ pub(super) fn rows_and_series(stage: &Stage, report: &mut Report) -> Result<()> 
 pub(super) fn passes(stage: &Stage, report: &mut Report, quick: bool) -> Result<()> {
     let lens = scenes::default_lens()?;
     let at_tolerance = |evaluator| {
-        let request = Request { evaluator: Some(evaluator), ..Request::new(stage.frame, TOLERANCE) };
-        Ok::<_, crate::Error>((lens.clone(), plan(&lens, &request)?))
+        let request = Request { evaluator: Some(evaluator), ..Request::new(TOLERANCE) };
+        plan(&Problem::new(lens.as_slice(), stage.frame), &request)
     };
     let by_hand = |evaluator| {
         let ghosts = scenes::scattered(lens.len(), 0.3, stage.frame);
-        let plan = by_hand(&ghosts, stage.frame, evaluator)?;
-        Ok::<_, crate::Error>((ghosts, plan))
+        by_hand(&ghosts, stage.frame, evaluator)
     };
     let mut cases = vec![at_tolerance(Evaluator::Direct)?, at_tolerance(Evaluator::Rows)?, by_hand(Evaluator::Rows)?];
     if !quick {
         cases.push(by_hand(Evaluator::Series)?);
     }
-    for (ghosts, plan) in cases {
-        let mut actor = stage.actor(stage.frame, &ghosts, &plan)?;
+    for plan in cases {
+        let mut actor = stage.actor(&plan)?;
         let passes = actor.passes(stage.rounds, |actor| actor.copy().and_then(|()| actor.everything()))?;
-        let title = format!("{} pass by pass: K = {}", plan.evaluator, ghosts.len());
+        let title = format!("{} pass by pass: K = {}", plan.evaluator(), plan.problem().ghosts().len());
         let mut table = Table::new(title, "copy").note(described(&plan));
         passes.iter().for_each(|pass| table.pass(pass, passes.first()));
         report.table(table);
@@ -105,20 +105,20 @@ pub(super) fn by_hand(ghosts: &[Ghost], frame: Frame, evaluator: Evaluator) -> R
     let aspect = f64::from(frame.width) / f64::from(frame.height);
     let period = Some(DVec2::new(2.0 * aspect + 2.0, 4.0));
     // The degree decides the error; the tolerance, how finely `grid` interpolates.
-    let request = Request { period, degree: Some(DEGREE), evaluator: Some(evaluator), ..Request::new(frame, 1e-2) };
-    plan(ghosts, &request)
+    let request = Request { period, degree: Some(DEGREE), evaluator: Some(evaluator), ..Request::new(1e-2) };
+    plan(&Problem::new(ghosts, frame), &request)
 }
 
 pub(super) fn described(plan: &Plan) -> String {
-    if plan.evaluator == Evaluator::Direct {
+    if plan.evaluator() == Evaluator::Direct {
         return format!("{} ghosts reach the picture.", plan.ghosts());
     }
-    let [n, m] = plan.degree;
-    let lattice = plan.lattice.map(|Lattice { nodes: [x, y], .. }| format!(", a lattice of {x} × {y} nodes"));
-    let groups = plan.groups.len();
-    let gathered = match plan.groups.iter().filter(|group| group.transform != Transform::Dispatch).count() {
+    let [n, m] = plan.degree();
+    let lattice = plan.lattice().map(|Lattice { nodes: [x, y], .. }| format!(", a lattice of {x} × {y} nodes"));
+    let groups = plan.groups().count();
+    let gathered = match plan.groups().filter(|group| group.transform != Transform::Dispatch).count() {
         0 => String::new(),
         gathered => format!(", {gathered} of them gathered"),
     };
-    format!("N = {n}, M = {m}, {} terms, {groups} groups{gathered}{}.", plan.terms, lattice.unwrap_or_default())
+    format!("N = {n}, M = {m}, {} terms, {groups} groups{gathered}{}.", plan.terms(), lattice.unwrap_or_default())
 }

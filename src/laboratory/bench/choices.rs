@@ -7,6 +7,7 @@ use crate::Result;
 use crate::certificate::Certificate;
 use crate::measure::{Ratio, Samples, in_turns};
 use crate::plan::{Evaluator, Plan, Request, plan};
+use crate::problem::Problem;
 use crate::terminal::progress::Progress;
 
 /// How many times as long as the fastest candidate a good choice takes, at most.
@@ -67,17 +68,18 @@ pub(super) fn of_random_scenes(stage: &Stage, report: &mut Report, count: u32) -
 
 fn outcome(stage: &Stage, seed: u64) -> Result<Outcome> {
     let Random { frame, ghosts, tolerance } = scenes::random(seed);
-    let asked = |evaluator| Request { evaluator, ..stage.request(frame, tolerance) };
-    let chosen = plan(&ghosts, &asked(None))?;
+    let asked = |evaluator| Request { evaluator, ..stage.request(tolerance) };
+    let problem = Problem::new(ghosts, frame);
+    let chosen = plan(&problem, &asked(None))?;
     let limit = HOPELESS * chosen.cost().unwrap_or(f64::INFINITY);
     // The choice stands first; it may be none of the others, where it sums some ghosts beside a series.
-    let others = Evaluator::ALL.into_iter().filter_map(|evaluator| plan(&ghosts, &asked(Some(evaluator))).ok());
+    let others = Evaluator::ALL.into_iter().filter_map(|evaluator| plan(&problem, &asked(Some(evaluator))).ok());
     let others = others.filter(|plan| {
-        let same = plan.evaluator == chosen.evaluator && plan.summed() == chosen.summed();
+        let same = plan.evaluator() == chosen.evaluator() && plan.summed() == chosen.summed();
         !same && plan.cost().is_some_and(|cost| cost <= limit)
     });
     let plans: Vec<Plan> = std::iter::once(chosen.clone()).chain(others).collect();
-    let mut actors = plans.iter().map(|plan| stage.actor(frame, &ghosts, plan)).collect::<Result<Vec<Actor>>>()?;
+    let mut actors = plans.iter().map(|plan| stage.actor(plan)).collect::<Result<Vec<Actor>>>()?;
     let times = in_turns(stage.rounds, actors.len(), |index| {
         let started = std::time::Instant::now();
         actors[index].everything()?;
@@ -85,12 +87,12 @@ fn outcome(stage: &Stage, seed: u64) -> Result<Outcome> {
     })?;
     let times: Vec<Samples> = times.into_iter().map(|times| times.into_iter().collect()).collect();
     let fastest = (0..times.len()).min_by(|&a, &b| times[a].median().total_cmp(&times[b].median())).unwrap_or_default();
-    let certificate = Certificate::measure(actors[0].renderer(), &ghosts, &chosen, frame, tolerance)?;
+    let certificate = Certificate::measure(actors[0].renderer(), &chosen)?;
     Ok(Outcome {
-        name: format!("{seed}: {} x {}, K = {}, {tolerance:.0e}", frame.width, frame.height, ghosts.len()),
-        chosen: chosen.evaluator,
-        split: chosen.evaluator != Evaluator::Direct && chosen.summed() > 0,
-        fastest: plans[fastest].evaluator,
+        name: format!("{seed}: {} x {}, K = {}, {tolerance:.0e}", frame.width, frame.height, problem.ghosts().len()),
+        chosen: chosen.evaluator(),
+        split: chosen.evaluator() != Evaluator::Direct && chosen.summed() > 0,
+        fastest: plans[fastest].evaluator(),
         best: fastest == 0,
         wall: times[0].clone(),
         over: times[0].over(&times[fastest]),

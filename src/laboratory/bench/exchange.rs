@@ -6,17 +6,17 @@ use super::stage::{Arm, Stage};
 use crate::Result;
 use crate::measure::interleave;
 use crate::plan::{Evaluator, Request, plan};
+use crate::problem::Problem;
 use crate::renderer::Settings;
 
 /// Upload, read-back and a whole frame from photo to photo, each in both ways.
 pub(super) fn ways(stage: &Stage, report: &mut Report) -> Result<()> {
-    let ghosts = scenes::default_lens()?;
-    let request = Request { evaluator: Some(Evaluator::Grid), ..Request::new(stage.frame, 1e-3) };
-    let plan = plan(&ghosts, &request)?;
+    let request = Request { evaluator: Some(Evaluator::Grid), ..Request::new(1e-3) };
+    let plan = plan(&Problem::new(scenes::default_lens()?, stage.frame), &request)?;
     let mut table = Table::new("To the device and back", "straight")
         .note("Pixel buffers cost the CPU one more copy; while the device fills or empties them, it need not wait.");
     let actor = |buffers| {
-        let mut actor = stage.actor(stage.frame, &ghosts, &plan)?;
+        let mut actor = stage.actor(&plan)?;
         actor.renderer().set_pixel_buffers(buffers);
         actor.frame()?;
         Ok::<_, crate::Error>(actor)

@@ -9,14 +9,15 @@ use crate::Result;
 use crate::gpu::PassTime;
 use crate::measure::Samples;
 use crate::plan::{Request, plan};
+use crate::problem::Problem;
 use crate::renderer::{Renderer, Settings};
 
 /// A frame of the default path from photo to photo, twice: the second needs no shader compiled.
 pub(super) fn frame(stage: &Stage, opened: Duration, report: &mut Report) -> Result<()> {
-    let ghosts = scenes::default_lens()?;
+    let problem = Problem::new(scenes::default_lens()?, stage.frame);
     let mut pixels = vec![[0.5; 4]; stage.frame.window.pixels()];
     let started = Instant::now();
-    let plan = plan(&ghosts, &Request { cost_model: stage.cost_model, ..Request::new(stage.frame, 1e-3) })?;
+    let plan = plan(&problem, &Request { cost_model: stage.cost_model, ..Request::new(1e-3) })?;
     let planned = started.elapsed();
 
     let started = Instant::now();
@@ -26,14 +27,14 @@ pub(super) fn frame(stage: &Stage, opened: Duration, report: &mut Report) -> Res
     let mut frame = |renderer: &mut Renderer| -> Result<(Duration, Vec<PassTime>)> {
         let started = Instant::now();
         renderer.forget_scene();
-        renderer.set_scene(&ghosts, &plan)?;
+        renderer.set_scene(&plan)?;
         renderer.composite(stage.frame, &mut pixels, &Settings::default())?;
         Ok((started.elapsed(), sums(renderer.take_times())))
     };
     let (first, first_passes) = frame(&mut renderer)?;
     let (second, second_passes) = frame(&mut renderer)?;
 
-    let title = format!("The first frame, with {} ghosts by {}", ghosts.len(), plan.evaluator);
+    let title = format!("The first frame, with {} ghosts by {}", problem.ghosts().len(), plan.evaluator());
     let mut table = Table::new(title, "second").note(
         "Measured once; \"frame\" is from photo to photo, and what its passes do not add up to is compiling. A driver\n\
          may have kept shaders from an earlier run: Mesa does, unless MESA_SHADER_CACHE_DISABLE is true.",

@@ -11,20 +11,21 @@ use crate::Result;
 use crate::certificate::Certificate;
 use crate::measure::interleave;
 use crate::plan::plan;
+use crate::problem::Problem;
 
 /// Plans, then measures the spectrum and the field, each as a whole.
 pub(super) fn of_one_size(stage: &Stage, report: &mut Report, count: usize, sigma: f64, tolerance: f64) -> Result<()> {
     let width = 2.0 * f64::from(stage.frame.width) / f64::from(stage.frame.height);
-    let ghosts = scenes::alike(count, sigma * width, stage.frame);
-    let request = stage.request(stage.frame, tolerance);
-    let planned = plan(&ghosts, &request)?;
-    let mut actor = stage.actor(stage.frame, &ghosts, &planned)?;
-    let certificate = Certificate::measure(actor.renderer(), &ghosts, &planned, stage.frame, tolerance)?;
+    let problem = Problem::new(scenes::alike(count, sigma * width, stage.frame), stage.frame);
+    let request = stage.request(tolerance);
+    let planned = plan(&problem, &request)?;
+    let mut actor = stage.actor(&planned)?;
+    let certificate = Certificate::measure(actor.renderer(), &planned)?;
 
     let shared = RefCell::new(&mut actor);
     let arms: [Arm<'_>; 5] = [
         &mut || shared.borrow_mut().copy(),
-        &mut || plan(&ghosts, &request).map(|plan| drop(black_box(plan))),
+        &mut || plan(&problem, &request).map(|plan| drop(black_box(plan))),
         &mut || shared.borrow_mut().spectrum(),
         &mut || shared.borrow_mut().frame(),
         &mut || shared.borrow_mut().everything(),
@@ -32,7 +33,7 @@ pub(super) fn of_one_size(stage: &Stage, report: &mut Report, count: usize, sigm
     let [copy, planning, spectrum, field, together] = interleave(stage.rounds, arms)?;
     let note = format!(
         "By {}. {} Off by {:.1e}, {:.1e} predicted.",
-        planned.evaluator,
+        planned.evaluator(),
         described(&planned),
         certificate.measured,
         certificate.predicted

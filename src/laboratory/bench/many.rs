@@ -8,6 +8,7 @@ use crate::Result;
 use crate::frame::{Frame, Window};
 use crate::measure::{Samples, interleave};
 use crate::plan::{Evaluator, Request, plan};
+use crate::problem::Problem;
 use crate::scene::Ghost;
 
 const FEW: usize = 5;
@@ -25,11 +26,10 @@ pub(super) fn ghosts(stage: &Stage, report: &mut Report, quick: bool) -> Result<
         if quick && evaluator == Evaluator::Series {
             continue;
         }
-        let mut plans = [by_hand(&few, stage.frame, evaluator)?, by_hand(&many, stage.frame, evaluator)?];
+        let [few, many] = [by_hand(&few, stage.frame, evaluator)?, by_hand(&many, stage.frame, evaluator)?];
         // The same work, whatever the plan thinks of its error.
-        plans[0].lattice = plans[1].lattice;
-        let mut once = stage.actor(stage.frame, &few, &plans[0])?;
-        let mut often = stage.actor(stage.frame, &many, &plans[1])?;
+        let few = few.with_series(|series| series.lattice = many.lattice().copied());
+        let (mut once, mut often) = (stage.actor(&few)?, stage.actor(&many)?);
         let ratio = pair(stage, &mut table, &evaluator.to_string(), [&mut || once.frame(), &mut || often.frame()])?;
         report.bar(format!("{evaluator}, K = {MANY} / K = {FEW}"), Target::Equal(BAR), ratio);
         if evaluator == Evaluator::Grid {
@@ -55,10 +55,10 @@ fn pair(stage: &Stage, table: &mut Table, what: &str, arms: [Arm<'_>; 2]) -> Res
 
 fn direct(stage: &Stage, table: &mut Table, few: &[Ghost], many: &[Ghost]) -> Result<()> {
     let small = middle(stage.frame, SMALL);
-    let by_direct =
-        |ghosts, frame| plan(ghosts, &Request { evaluator: Some(Evaluator::Direct), ..Request::new(frame, 0.1) });
-    let mut once = stage.actor(stage.frame, few, &by_direct(few, stage.frame)?)?;
-    let mut often = stage.actor(small, many, &by_direct(many, stage.frame)?)?;
+    let request = Request { evaluator: Some(Evaluator::Direct), ..Request::new(1e-3) };
+    let by_direct = |ghosts: &[Ghost], frame| plan(&Problem::new(ghosts, frame), &request);
+    let mut once = stage.actor(&by_direct(few, stage.frame)?)?;
+    let mut often = stage.actor(&by_direct(many, small)?)?;
     let [once, often] = interleave(stage.rounds, [&mut || once.frame(), &mut || often.frame()] as [Arm<'_>; 2])?;
     let often: Samples = often.scaled(stage.frame.window.pixels() as f64 / small.window.pixels() as f64);
     table.row("direct, few", &once, None);

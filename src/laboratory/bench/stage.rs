@@ -8,7 +8,6 @@ use crate::gpu::{Device, PassTime};
 use crate::measure::{Rounds, Samples};
 use crate::plan::{CostModel, Plan, Request};
 use crate::renderer::{Renderer, Settings};
-use crate::scene::Ghost;
 
 /// One of the things that are timed in turns.
 pub(super) type Arm<'a> = &'a mut dyn FnMut() -> Result<()>;
@@ -26,9 +25,7 @@ pub(super) struct Stage {
 pub(super) struct Actor {
     renderer: Renderer,
     trusted: bool,
-    ghosts: Vec<Ghost>,
     plan: Plan,
-    frame: Frame,
 }
 
 /// One pass over the rounds.
@@ -53,9 +50,9 @@ impl Stage {
     }
 
     /// What is asked of a plan whose choices are to be measured here.
-    pub fn request(&self, frame: Frame, tolerance: f64) -> Request {
+    pub fn request(&self, tolerance: f64) -> Request {
         let loop_rounds = self.device.info().loop_rounds().unwrap_or(usize::MAX);
-        Request { loop_rounds, cost_model: self.cost_model, ..Request::new(frame, tolerance) }
+        Request { loop_rounds, cost_model: self.cost_model, ..Request::new(tolerance) }
     }
 
     /// Whether the device's timer tells the truth. Mesa's software renderer leaves out what compute shaders do.
@@ -70,12 +67,12 @@ impl Stage {
         Ok(renderer)
     }
 
-    /// A renderer of its own for the scene, on the whole picture or a window of it.
-    pub fn actor(&self, frame: Frame, ghosts: &[Ghost], plan: &Plan) -> Result<Actor> {
-        let mut renderer = self.renderer()?;
+    /// A renderer of its own, with the plan's scene and a photo of its size.
+    pub fn actor(&self, plan: &Plan) -> Result<Actor> {
+        let (mut renderer, frame) = (self.renderer()?, plan.problem().frame());
         renderer.load(frame, &vec![[0.5; 4]; frame.window.pixels()])?;
-        renderer.set_scene(ghosts, plan)?;
-        Ok(Actor { renderer, trusted: self.trusted(), ghosts: ghosts.to_vec(), plan: plan.clone(), frame })
+        renderer.set_scene(plan)?;
+        Ok(Actor { renderer, trusted: self.trusted(), plan: plan.clone() })
     }
 }
 
@@ -93,21 +90,21 @@ impl Actor {
 
     /// The picture, from a spectrum that is there.
     pub fn frame(&mut self) -> Result<()> {
-        self.renderer.draw(self.frame, &Settings::default())?;
+        self.renderer.draw(self.plan.problem().frame(), &Settings::default())?;
         self.finish()
     }
 
     /// The spectrum alone, anew.
     pub fn spectrum(&mut self) -> Result<()> {
         self.renderer.forget_scene();
-        self.renderer.set_scene(&self.ghosts, &self.plan)?;
+        self.renderer.set_scene(&self.plan)?;
         self.finish()
     }
 
     /// The spectrum anew, then the picture.
     pub fn everything(&mut self) -> Result<()> {
         self.renderer.forget_scene();
-        self.renderer.set_scene(&self.ghosts, &self.plan)?;
+        self.renderer.set_scene(&self.plan)?;
         self.frame()
     }
 

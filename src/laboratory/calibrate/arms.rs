@@ -11,6 +11,7 @@ use crate::gpu::Device;
 use crate::laboratory::bench::scenes::scattered;
 use crate::measure::Rounds;
 use crate::plan::{Evaluator, Lattice, Plan, Request, Transform, plan};
+use crate::problem::Problem;
 use crate::renderer::{Renderer, Settings};
 use crate::scene::Ghost;
 use crate::series::moments::Cells;
@@ -38,21 +39,19 @@ pub(super) struct Arm {
     work: Work,
     /// Which of the stage's pictures.
     picture: usize,
-    ghosts: Vec<Ghost>,
     pub plan: Plan,
-    pub frame: Frame,
     repeats: usize,
 }
 
 impl Arm {
     /// Pixels of its picture.
     pub fn pixels(&self) -> f64 {
-        self.frame.window.pixels() as f64
+        self.plan.problem().frame().window.pixels() as f64
     }
 
     /// Rows of its picture.
     pub fn rows(&self) -> f64 {
-        f64::from(self.frame.window.height)
+        f64::from(self.plan.problem().frame().window.height)
     }
 }
 
@@ -96,7 +95,7 @@ impl Arms {
         let arm = |work, picture: usize, count, plan: &dyn Fn(&[Ghost], Frame) -> Result<Plan>| {
             let frame = frames[picture];
             let ghosts = scattered(count, 0.3, frame);
-            Ok(Arm { work, picture, plan: plan(&ghosts, frame)?, ghosts, frame, repeats: 1 })
+            Ok(Arm { work, picture, plan: plan(&ghosts, frame)?, repeats: 1 })
         };
         let few = |evaluator, degree| move |ghosts: &[Ghost], frame| by_hand(ghosts, frame, evaluator, degree);
         let (series, rows) =
@@ -152,18 +151,18 @@ impl Arms {
     fn one(&mut self, index: usize) -> Result<f64> {
         let arm = &self.all[index];
         let renderer = &mut self.renderers[arm.picture];
-        renderer.set_scene(&arm.ghosts, &arm.plan)?;
-        renderer.draw(arm.frame, &Settings::default())?;
+        renderer.set_scene(&arm.plan)?;
+        renderer.draw(arm.plan.problem().frame(), &Settings::default())?;
         renderer.finish();
         let started = Instant::now();
         for _ in 0..arm.repeats {
             if matches!(arm.work, Work::Spectrum | Work::Everything) {
                 renderer.forget_scene();
-                renderer.set_scene(&arm.ghosts, &arm.plan)?;
+                renderer.set_scene(&arm.plan)?;
             }
             match arm.work {
                 Work::Copy => renderer.draw_copy()?,
-                Work::Frame | Work::Everything => renderer.draw(arm.frame, &Settings::default())?,
+                Work::Frame | Work::Everything => renderer.draw(arm.plan.problem().frame(), &Settings::default())?,
                 Work::Spectrum => {}
             }
         }
@@ -174,30 +173,34 @@ impl Arms {
 
 /// The direct sum of them all.
 fn direct(ghosts: &[Ghost], frame: Frame) -> Result<Plan> {
-    plan(ghosts, &Request { evaluator: Some(Evaluator::Direct), ..Request::new(frame, 1e-3) })
+    plan(&Problem::new(ghosts, frame), &Request { evaluator: Some(Evaluator::Direct), ..Request::new(1e-3) })
 }
 
 /// A series of a given degree, whose error does not matter here.
 fn by_hand(ghosts: &[Ghost], frame: Frame, evaluator: Evaluator, degree: [u32; 2]) -> Result<Plan> {
     let aspect = f64::from(frame.width) / f64::from(frame.height);
     let period = Some(DVec2::new(2.0 * aspect + 2.0, 4.0));
-    plan(ghosts, &Request { period, degree: Some(degree), evaluator: Some(evaluator), ..Request::new(frame, 1e-2) })
+    plan(
+        &Problem::new(ghosts, frame),
+        &Request { period, degree: Some(degree), evaluator: Some(evaluator), ..Request::new(1e-2) },
+    )
 }
 
 /// A few modes, gathered from cells of many moments. Sizes differ, and the error does not matter here.
 fn gathered(ghosts: &[Ghost], frame: Frame) -> Result<Plan> {
-    let mut plan = by_hand(ghosts, frame, Evaluator::Rows, [2, 2])?;
-    for group in &mut plan.groups {
-        group.transform = Transform::Gather(CELLS);
-    }
-    Ok(plan)
+    let plan = by_hand(ghosts, frame, Evaluator::Rows, [2, 2])?;
+    Ok(plan.with_series(|series| {
+        for group in &mut series.groups {
+            group.transform = Transform::Gather(CELLS);
+        }
+    }))
 }
 
 const CELLS: Cells = Cells { counts: [8, 8], orders: [12, 12] };
 
 /// What a plan's gathered ghosts have to do each, in moments.
 pub(super) fn moments(plan: &Plan) -> f64 {
-    plan.groups.first().map_or(0.0, |group| group.transform.moments())
+    plan.groups().next().map_or(0.0, |group| group.transform.moments())
 }
 
 /// By `grid`, with hardly any terms, on a lattice of so many columns and few lines.
@@ -210,5 +213,5 @@ fn grid(ghosts: &[Ghost], frame: Frame, columns: u32) -> Result<Plan> {
     let cells = [columns, LINES].map(|nodes| f64::from(nodes - BEYOND) + 0.5);
     let step = (high - low) / DVec2::from(cells);
     let lattice = Lattice { step, nodes: [columns, LINES], oversampling: DVec2::ONE, error: f64::INFINITY };
-    Ok(Plan { lattice: Some(lattice), ..plan })
+    Ok(plan.with_series(|series| series.lattice = Some(lattice)))
 }

@@ -44,10 +44,10 @@ pub(super) fn measure(device: &Rc<Device>, rounds: Rounds) -> Result<Fitted> {
 fn constants(arms: &[Arm], times: &[f64]) -> [f64; CostModel::COUNT] {
     use place::*;
     let more = |[low, high]: [usize; 2]| 1e6 * (times[high] - times[low]);
-    let terms = |[low, high]: [usize; 2]| arms[high].plan.terms as f64 - arms[low].plan.terms as f64;
+    let terms = |[low, high]: [usize; 2]| arms[high].plan.terms() as f64 - arms[low].plan.terms() as f64;
     let ghosts = |[low, high]: [usize; 2]| arms[high].plan.ghosts() as f64 - arms[low].plan.ghosts() as f64;
-    let harmonics = |index: usize| f64::from(arms[index].plan.degree[0] + 1);
-    let nodes = |index: usize| arms[index].plan.lattice.map_or([0.0; 2], |lattice| lattice.nodes.map(f64::from));
+    let harmonics = |index: usize| f64::from(arms[index].plan.degree()[0] + 1);
+    let nodes = |index: usize| arms[index].plan.lattice().map_or([0.0; 2], |lattice| lattice.nodes.map(f64::from));
 
     let bell = more(DIRECT) / (arms[DIRECT[0]].pixels() * ghosts(DIRECT));
     let term = more(SERIES) / (arms[SERIES[0]].pixels() * terms(SERIES));
@@ -63,7 +63,7 @@ fn constants(arms: &[Arm], times: &[f64]) -> [f64; CostModel::COUNT] {
     // The same lattice under a wider picture, less what a wider picture costs anyway.
     let wider = arms[spread].pixels() - arms[coarse].pixels();
     let interpolation = (more([coarse, spread]) - more([COPY, COPY_WIDE])) / wider;
-    let modes = arms[SPECTRUM[0]].plan.terms as f64;
+    let modes = arms[SPECTRUM[0]].plan.terms() as f64;
     let spectrum = more(SPECTRUM) / (ghosts(SPECTRUM) * modes);
     let moment = more(MOMENTS) / (ghosts(MOMENTS) * moments(&arms[MOMENTS[0]].plan));
     let pass = 1e6 * times[TINY] / GRID_PASSES;
@@ -145,8 +145,8 @@ mod tests {
     fn expected(model: &CostModel, index: usize, arm: &Arm) -> f64 {
         use place::*;
         let plan = &arm.plan;
-        let terms = plan.terms as f64;
-        let harmonics = f64::from(plan.degree[0] + 1);
+        let terms = plan.terms() as f64;
+        let harmonics = f64::from(plan.degree()[0] + 1);
         let rows = |rows: f64, columns: f64| rows * terms * model.profile + rows * columns * harmonics * model.harmonic;
         let base = 4.0 * arm.pixels();
         let nanoseconds = match index {
@@ -158,7 +158,7 @@ mod tests {
             k if MOMENTS.contains(&k) => plan.ghosts() as f64 * moments(plan) * model.moment,
             TINY => GRID_PASSES * model.pass,
             _ => {
-                let [columns, lines] = plan.lattice.unwrap().nodes.map(f64::from);
+                let [columns, lines] = plan.lattice().unwrap().nodes.map(f64::from);
                 base + rows(lines, columns) + columns * arm.rows() * model.strip + arm.pixels() * model.interpolation
             }
         };

@@ -11,7 +11,8 @@ use super::chart::{Axis, Chart, Map, Scalar};
 use super::report::{Field, Figure};
 use crate::Result;
 use crate::frame::Frame;
-use crate::plan::{Evaluator, Group, Plan, Prediction, Transform};
+use crate::plan::{Evaluator, Group, Layer, Plan, Series, Transform};
+use crate::problem::Problem;
 use crate::renderer::{Renderer, Settings};
 use crate::scene::Ghost;
 use crate::series::Bell;
@@ -119,7 +120,6 @@ impl Scene {
     /// A plan by hand: the notes' period, their whole rectangle of modes, all of their ghosts, and no promise of any
     /// error.
     fn plan(&self, canvas: &Canvas, evaluator: Evaluator) -> Plan {
-        let counts = vec![self.degree[1] + 1; self.degree[0] as usize + 1];
         let group = Group {
             bell: self.bell.clone(),
             members: Arc::new((0..self.centers.len() as u32).collect()),
@@ -128,24 +128,19 @@ impl Scene {
             largest: self.size * canvas.scale,
             weight: self.centers.len() as f64,
             degree: self.degree,
-            transform: if evaluator == Evaluator::Direct { Transform::Direct } else { Transform::Dispatch },
+            transform: Transform::Dispatch,
         };
-        Plan {
-            tolerance: f64::INFINITY,
-            evaluator,
-            period: self.period * canvas.scale,
-            degree: self.degree,
-            terms: counts.iter().map(|&count| count as usize).sum(),
-            counts,
-            groups: vec![group],
-            lattice: None,
-            scale: [1.0; 3],
-            peaks: Vec::new(),
-            dropped: 0,
-            predicted: Prediction::default(),
-            costs: Vec::new(),
-            refused: Vec::new(),
-        }
+        let layer = match evaluator {
+            Evaluator::Direct => Layer::direct([group]),
+            _ => Layer::Series(Series {
+                evaluator,
+                period: self.period * canvas.scale,
+                counts: vec![self.degree[1] + 1; self.degree[0] as usize + 1].into(),
+                groups: vec![group],
+                lattice: None,
+            }),
+        };
+        Plan::by_hand(Problem::new(self.ghosts(canvas), canvas.frame), vec![layer])
     }
 
     /// The bell's own coefficients: (a, b, p, r) for each mode.
@@ -159,7 +154,7 @@ impl Scene {
     /// # Errors
     /// [`crate::Error::Gl`] where the driver refuses.
     pub fn set(&self, renderer: &mut Renderer, canvas: &Canvas, evaluator: Evaluator) -> Result<()> {
-        renderer.set_scene(&self.ghosts(canvas), &self.plan(canvas, evaluator))
+        renderer.set_scene(&self.plan(canvas, evaluator))
     }
 
     /// The field of the series on the GPU, summed at every pixel as the prototype did.
@@ -178,7 +173,7 @@ impl Scene {
     pub fn draw_table(&self, renderer: &mut Renderer, canvas: Canvas, table: &[[f64; 4]]) -> Result<Drawn> {
         let plan = self.plan(&canvas, Evaluator::Series);
         let table: Vec<_> = table.iter().map(|mode| mode.map(|value| value as f32)).collect();
-        renderer.set_tabulated(&self.ghosts(&canvas), &plan, &table)?;
+        renderer.set_tabulated(&plan, &table)?;
         Drawn::new(renderer, canvas, &Settings::default())
     }
 }
@@ -264,7 +259,7 @@ mod tests {
         let ghost = &scene.ghosts(&canvas)[0];
         assert!((ghost.center - DVec2::new(5.0 / 16.0, -10.0 / 16.0)).length() < 1e-12, "{}", ghost.center);
         assert!((ghost.size - DVec2::splat(1.0 / 16.0)).length() < 1e-12, "{}", ghost.size);
-        assert!((scene.plan(&canvas, Evaluator::Series).period - DVec2::new(1.0, 2.0)).length() < 1e-12);
+        assert!((scene.plan(&canvas, Evaluator::Series).period() - DVec2::new(1.0, 2.0)).length() < 1e-12);
         assert_eq!([scene.direct(DVec2::new(5.0, -10.0)), scene.periodised(DVec2::new(-11.0, 22.0))], [1.0, 1.0]);
     }
 }

@@ -9,7 +9,6 @@ use crate::gpu::Device;
 use crate::measure::{Rounds, Samples, in_turns};
 use crate::plan::{CostModel, Evaluator, Plan, Request};
 use crate::renderer::{Renderer, Settings};
-use crate::scene::Ghost;
 
 /// The part of a picture, one over this many rows, that a first try of a slow evaluator draws.
 const TRY: u32 = 64;
@@ -28,9 +27,13 @@ pub(super) struct Bench {
 
 /// One of the things that are timed in turns.
 pub(super) struct Arm<'a> {
-    pub ghosts: &'a [Ghost],
     pub plan: &'a Plan,
-    pub frame: Frame,
+}
+
+impl Arm<'_> {
+    fn frame(&self) -> Frame {
+        self.plan.problem().frame()
+    }
 }
 
 /// What an arm took, in milliseconds, to glFinish.
@@ -61,13 +64,13 @@ impl Bench {
     }
 
     /// What to ask of a plan for this device.
-    pub fn request(&self, frame: Frame, tolerance: f64) -> Request {
+    pub fn request(&self, tolerance: f64) -> Request {
         let info = self.device.info();
         Request {
             loop_rounds: info.loop_rounds().unwrap_or(usize::MAX),
             most_terms: (info.limits.storage_block / 48) as usize,
             cost_model: self.cost_model,
-            ..Request::new(frame, tolerance)
+            ..Request::new(tolerance)
         }
     }
 
@@ -92,8 +95,8 @@ impl Bench {
 
     /// The part of an arm's picture that there is patience for.
     fn part(&mut self, arm: &Arm<'_>) -> Result<Window> {
-        let whole = arm.frame.window;
-        if !matches!(arm.plan.evaluator, Evaluator::Direct | Evaluator::Series) {
+        let whole = arm.frame().window;
+        if !matches!(arm.plan.evaluator(), Evaluator::Direct | Evaluator::Series) {
             return Ok(whole);
         }
         let least = whole.height.div_ceil(TRY);
@@ -108,12 +111,12 @@ impl Bench {
 
     /// The spectrum and then a part of the picture: milliseconds until the one and until the other is done.
     fn run(&mut self, arm: &Arm<'_>, part: Window) -> Result<[f64; 2]> {
-        let frame = arm.frame.with_window(part);
+        let frame = arm.frame().with_window(part);
         self.renderer.load(frame, &vec![[0.5; 4]; part.pixels()])?;
         self.renderer.forget_scene();
         self.renderer.finish();
         let started = Instant::now();
-        self.renderer.set_scene(arm.ghosts, arm.plan)?;
+        self.renderer.set_scene(arm.plan)?;
         self.renderer.finish();
         let spectrum = started.elapsed();
         self.renderer.draw(frame, &Settings::default())?;
@@ -128,7 +131,7 @@ fn rows(window: Window, count: u32) -> Window {
 }
 
 fn timing(part: Window, arm: &Arm<'_>, times: &[[f64; 2]]) -> Timing {
-    let share = f64::from(part.height) / f64::from(arm.frame.window.height);
+    let share = f64::from(part.height) / f64::from(arm.frame().window.height);
     Timing {
         spectrum: times.iter().map(|[spectrum, _]| *spectrum).collect(),
         whole: times.iter().map(|[spectrum, all]| spectrum + (all - spectrum) / share).collect(),

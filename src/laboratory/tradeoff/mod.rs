@@ -137,7 +137,8 @@ pub fn measure(
     let seen = front::choice(&points).and_then(|point| looks.delta_e(point));
     // Whichever evaluator the planner takes, the phases are those of a series.
     let tight = study.tightest(|request| Request { evaluator: Some(Evaluator::Rows), ..request });
-    let period = tight.as_ref().filter(|(_, plan)| plan.terms > 0).map_or_else(|| wide(&study), |(_, p)| p.period.x);
+    let period =
+        tight.as_ref().filter(|(_, plan)| plan.terms() > 0).map_or_else(|| wide(&study), |(_, p)| p.period().x);
     Ok(Results {
         vglare: env!("CARGO_PKG_VERSION"),
         photo: subject.name.to_owned(),
@@ -152,7 +153,7 @@ pub fn measure(
         recommendation: front::recommend(&points).map(|found| found.seen(seen.unwrap_or(0.0))),
         crossovers: front::crossovers(&points),
         phase_reach: tight
-            .map(|(_, plan)| f64::from(plan.degree[0]) * 0.5 * wide(&study) / period)
+            .map(|(_, plan)| f64::from(plan.degree()[0]) * 0.5 * wide(&study) / period)
             .filter(|&n| n >= 1.0),
         phases: phases::curves(study.photo.frame, period),
         phase_period: period,

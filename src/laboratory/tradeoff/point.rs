@@ -84,15 +84,15 @@ pub struct Point {
 impl Point {
     /// A plan, not measured yet.
     pub(super) fn planned(sweep: Sweep, frame: Frame, asked: Option<f64>, plan: &Plan) -> Self {
-        let series = plan.evaluator != Evaluator::Direct;
+        let series = plan.evaluator() != Evaluator::Direct;
         Self {
-            evaluator: Some(plan.evaluator),
-            period_x: series.then_some(plan.period.x),
-            period_y: series.then_some(plan.period.y),
-            degree_x: series.then_some(plan.degree[0]),
-            degree_y: series.then_some(plan.degree[1]),
-            terms: series.then_some(plan.terms),
-            oversampling: plan.lattice.map(|lattice| lattice.oversampling.min_element()),
+            evaluator: Some(plan.evaluator()),
+            period_x: series.then_some(plan.period().x),
+            period_y: series.then_some(plan.period().y),
+            degree_x: series.then_some(plan.degree()[0]),
+            degree_y: series.then_some(plan.degree()[1]),
+            terms: series.then_some(plan.terms()),
+            oversampling: plan.lattice().map(|lattice| lattice.oversampling.min_element()),
             predicted: Some(plan.predicted.total()),
             ..Self::empty(sweep, frame, plan.ghosts() + plan.dropped, asked)
         }

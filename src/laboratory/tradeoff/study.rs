@@ -1,6 +1,7 @@
 //! What all sweeps share: the photo at the size they run at, its ghosts, the bench and the sample.
 
 use std::rc::Rc;
+use std::sync::Arc;
 
 use image::imageops::{FilterType, resize};
 use image::{ImageBuffer, Rgba};
@@ -15,6 +16,7 @@ use crate::frame::Frame;
 use crate::gpu::Device;
 use crate::photo::Photo;
 use crate::plan::{CostModel, Plan, Request, plan};
+use crate::problem::Problem;
 
 /// Pixels of the pictures that sweeps run at, at most: a quick look, and a thorough one.
 const QUICK_PIXELS: f64 = 3e5;
@@ -27,6 +29,8 @@ const TIGHT: [f64; 6] = [1e-5, 3e-5, 1e-4, 1e-3, 1e-2, 1e-1];
 pub(super) struct Study<'a> {
     pub subject: &'a Subject<'a>,
     pub quick: bool,
+    /// The subject's ghosts on this photo.
+    pub problem: Arc<Problem>,
     /// The whole picture, shrunk where it is too large for the sweeps.
     pub photo: Photo,
     pub bench: Bench,
@@ -42,15 +46,13 @@ impl<'a> Study<'a> {
         let most = most.max(subject.photo.width() as usize * subject.photo.height() as usize);
         let bench = Bench::new(device, cost_model, quick, most)?;
         // Any plan knows where the field is large; `direct` is there for every scene.
-        let mut request = bench.request(photo.frame, 0.5);
+        let mut request = bench.request(0.5);
         request.evaluator = Some(crate::plan::Evaluator::Direct);
         request.loop_rounds = usize::MAX;
-        let also = match plan(subject.ghosts, &request) {
-            Ok(plan) => sample_pixels(subject.ghosts, &plan, photo.frame),
-            Err(_) => Vec::new(),
-        };
+        let problem = Problem::new(subject.ghosts, photo.frame);
+        let also = plan(&problem, &request).map_or_else(|_| Vec::new(), |plan| sample_pixels(&plan));
         let sample = Sample::new(&photo, subject.ghosts, also);
-        Ok(Self { subject, quick, photo, bench, sample })
+        Ok(Self { subject, quick, problem, photo, bench, sample })
     }
 
     pub fn frame(&self) -> Frame {
@@ -58,13 +60,13 @@ impl<'a> Study<'a> {
     }
 
     pub fn request(&self, tolerance: f64) -> Request {
-        self.bench.request(self.frame(), tolerance)
+        self.bench.request(tolerance)
     }
 
     /// The photo's plan for the tightest tolerance that `asked` can have, and that tolerance.
     pub fn tightest(&self, asked: impl Fn(Request) -> Request) -> Option<(f64, Plan)> {
         TIGHT.iter().find_map(|&tolerance| {
-            plan(self.subject.ghosts, &asked(self.request(tolerance))).ok().map(|plan| (tolerance, plan))
+            plan(&self.problem, &asked(self.request(tolerance))).ok().map(|plan| (tolerance, plan))
         })
     }
 
@@ -73,13 +75,13 @@ impl<'a> Study<'a> {
     /// # Errors
     /// [`crate::Error::Gl`] where the driver refuses.
     pub fn measured(&mut self, sweep: Sweep, plans: &[(Option<f64>, Plan)], watch: Watch<'_>) -> Result<Vec<Point>> {
-        let (frame, ghosts) = (self.frame(), self.subject.ghosts);
+        let frame = self.frame();
         // One plan may do for many tolerances; it is timed once.
         let mut arms: Vec<Arm<'_>> = Vec::new();
         let mut indices = Vec::new();
         for (_, plan) in plans {
             let index = arms.iter().position(|arm| arm.plan == plan).unwrap_or_else(|| {
-                arms.push(Arm { ghosts, plan, frame });
+                arms.push(Arm { plan });
                 arms.len() - 1
             });
             indices.push(index);
@@ -87,7 +89,7 @@ impl<'a> Study<'a> {
         let timings = self.bench.time(&arms, watch)?;
         let mut points = Vec::new();
         for ((asked, plan), timing) in plans.iter().zip(indices.iter().map(|&index| &timings[index])) {
-            self.bench.renderer.set_scene(ghosts, plan)?;
+            self.bench.renderer.set_scene(plan)?;
             let field = self.bench.renderer.probe(frame, &self.sample.pixels)?;
             let quality = self.sample.judge(&field);
             points.push(Point::planned(sweep, frame, *asked, plan).with_quality(&quality).with_timing(timing));

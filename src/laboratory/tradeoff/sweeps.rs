@@ -1,5 +1,7 @@
 //! The sweeps: each varies one thing and measures what comes of it.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 
 use super::Watch;
@@ -10,6 +12,7 @@ use crate::certificate::Certificate;
 use crate::chance::Chance;
 use crate::frame::Frame;
 use crate::plan::{Evaluator, Plan, Request, plan};
+use crate::problem::Problem;
 use crate::scene::Ghost;
 use crate::series::Bell;
 use crate::{Error, Result};
@@ -33,8 +36,8 @@ pub(super) fn tolerance(study: &mut Study<'_>, watch: Watch<'_>) -> Result<Vec<P
     let (mut plans, mut refused) = (Vec::new(), Vec::new());
     let mut chosen = Vec::new();
     for tolerance in exponents.iter().map(|exponent| rounded(10f64.powf(-exponent))) {
-        match plan(ghosts, &study.request(tolerance)) {
-            Ok(plan) => chosen.push((tolerance, plan.evaluator)),
+        match plan(&study.problem, &study.request(tolerance)) {
+            Ok(plan) => chosen.push((tolerance, plan.evaluator())),
             Err(reason) => {
                 let point = Point::refused(Sweep::Tolerance, frame, ghosts.len(), Some(tolerance), &reason);
                 refused.push(Point { planner: true, ..point });
@@ -42,7 +45,7 @@ pub(super) fn tolerance(study: &mut Study<'_>, watch: Watch<'_>) -> Result<Vec<P
         }
         for evaluator in Evaluator::ALL {
             let request = Request { evaluator: Some(evaluator), ..study.request(tolerance) };
-            match plan(ghosts, &request) {
+            match plan(&study.problem, &request) {
                 Ok(plan) => plans.push((Some(tolerance), plan)),
                 Err(reason) => {
                     let point = Point::refused(Sweep::Tolerance, frame, ghosts.len(), Some(tolerance), &reason);
@@ -72,17 +75,17 @@ fn rounded(value: f64) -> f64 {
 pub(super) fn degree(study: &mut Study<'_>, watch: Watch<'_>) -> Result<Vec<Point>> {
     let rows = |request: Request| Request { evaluator: Some(Evaluator::Rows), ..request };
     let Some((_, tight)) = study.tightest(rows) else { return Ok(Vec::new()) };
-    let last = f64::from(tight.degree[0].clamp(2, HIGHEST)) * 1.15;
+    let last = f64::from(tight.degree()[0].clamp(2, HIGHEST)) * 1.15;
     let count = if study.quick { 12 } else { 24 };
     let mut degrees: Vec<u32> =
         (0..count).map(|k| (1.0 + (last - 1.0) * f64::from(k) / f64::from(count - 1)).round() as u32).collect();
     degrees.dedup();
-    let across = f64::from(tight.degree[1]) / f64::from(tight.degree[0].max(1));
+    let across = f64::from(tight.degree()[1]) / f64::from(tight.degree()[0].max(1));
     let mut plans = Vec::new();
     for n in degrees {
         let m = ((f64::from(n) * across).round() as u32).clamp(1, HIGHEST);
-        let request = Request { period: Some(tight.period), degree: Some([n, m]), ..rows(study.request(USUAL)) };
-        plans.extend(plan(study.subject.ghosts, &request).ok().map(|plan| (None, plan)));
+        let request = Request { period: Some(tight.period()), degree: Some([n, m]), ..rows(study.request(USUAL)) };
+        plans.extend(plan(&study.problem, &request).ok().map(|plan| (None, plan)));
     }
     study.measured(Sweep::Degree, &plans, watch)
 }
@@ -97,13 +100,13 @@ pub(super) fn oversampling(study: &mut Study<'_>, watch: Watch<'_>) -> Result<Ve
     let mut plans = vec![(Some(tolerance), planned.clone())];
     for nodes in [1.1, 1.35, 1.7, 2.0, 2.5, 3.0, 4.0, 6.0, 8.0, 12.0] {
         let request = Request {
-            period: Some(planned.period),
-            degree: Some(planned.degree),
+            period: Some(planned.period()),
+            degree: Some(planned.degree()),
             oversampling: Some(nodes),
             ..grid(study.request(tolerance))
         };
         // A lattice beyond the device's textures is no plan; the sweep ends there.
-        plans.extend(plan(study.subject.ghosts, &request).ok().map(|plan| (None, plan)));
+        plans.extend(plan(&study.problem, &request).ok().map(|plan| (None, plan)));
     }
     let mut points = study.measured(Sweep::Oversampling, &plans, watch)?;
     if let Some(first) = points.first_mut() {
@@ -117,15 +120,15 @@ pub(super) fn oversampling(study: &mut Study<'_>, watch: Watch<'_>) -> Result<Ve
 /// # Errors
 /// [`Error::Gl`] where the driver refuses.
 pub(super) fn storage(study: &mut Study<'_>, watch: Watch<'_>) -> Result<Vec<Point>> {
-    let (frame, ghosts) = (study.frame(), study.subject.ghosts);
+    let frame = study.frame();
     let mut points = Vec::new();
     for (done, tolerance) in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6].into_iter().enumerate() {
         let request = Request { evaluator: Some(Evaluator::Rows), ..study.request(tolerance) };
-        let Ok(plan) = plan(ghosts, &request) else { continue };
+        let Ok(plan) = plan(&study.problem, &request) else { continue };
         let renderer = &mut study.bench.renderer;
         for storage in [Storage::Float, Storage::Half] {
             renderer.forget_scene();
-            renderer.set_scene(ghosts, &plan)?;
+            renderer.set_scene(&plan)?;
             if storage == Storage::Half {
                 renderer.round_spectrum()?;
             }
@@ -149,9 +152,8 @@ pub(super) fn ghosts(study: &mut Study<'_>, watch: Watch<'_>) -> Result<Vec<Poin
     let counts: &[usize] =
         if study.quick { &[1, 10, 100, 1000, 10_000] } else { &[1, 3, 10, 30, 100, 300, 1000, 3000, 10_000] };
     let frame = study.frame();
-    let scenes: Vec<Vec<Ghost>> = counts.iter().map(|&count| scattered(count, frame)).collect();
-    let wanted = scenes.iter().flat_map(|scene| Evaluator::ALL.map(|evaluator| (scene.as_slice(), evaluator, frame)));
-    certified(study, Sweep::Ghosts, USUAL, wanted.collect(), watch)
+    let problems: Vec<_> = counts.iter().map(|&count| Problem::new(scattered(count, frame), frame)).collect();
+    certified(study, Sweep::Ghosts, USUAL, &problems, watch)
 }
 
 /// From a small picture to the photo's own size, at one tolerance.
@@ -170,50 +172,43 @@ pub(super) fn size(study: &mut Study<'_>, tolerance: f64, watch: Watch<'_>) -> R
     });
     let mut frames: Vec<Frame> = frames.collect();
     frames.dedup();
-    let ghosts = study.subject.ghosts;
-    let wanted = frames.iter().flat_map(|&frame| Evaluator::ALL.map(|evaluator| (ghosts, evaluator, frame)));
-    let mut points = certified(study, Sweep::Size, tolerance, wanted.collect(), watch)?;
+    let problems: Vec<_> = frames.iter().map(|&frame| study.problem.on(frame)).collect();
+    let mut points = certified(study, Sweep::Size, tolerance, &problems, watch)?;
     for point in &mut points {
-        let request = study.bench.request(Frame::full(point.width, point.height), tolerance);
-        point.planner = plan(ghosts, &request).is_ok_and(|plan| Some(plan.evaluator) == point.evaluator);
+        let problem = study.problem.on(Frame::full(point.width, point.height));
+        point.planner =
+            plan(&problem, &study.request(tolerance)).is_ok_and(|plan| Some(plan.evaluator()) == point.evaluator);
     }
     Ok(points)
 }
 
-/// Scenes, evaluators and pictures, timed in turns and held against the direct sum at a certificate's pixels.
+/// Problems by every evaluator, timed in turns and held against the direct sum at a certificate's pixels.
 fn certified(
     study: &mut Study<'_>,
     sweep: Sweep,
     tolerance: f64,
-    wanted: Vec<(&[Ghost], Evaluator, Frame)>,
+    problems: &[Arc<Problem>],
     watch: Watch<'_>,
 ) -> Result<Vec<Point>> {
-    let planned: Vec<Result<Plan, Error>> = wanted
-        .iter()
-        .map(|&(ghosts, evaluator, frame)| {
-            plan(ghosts, &Request { evaluator: Some(evaluator), ..study.bench.request(frame, tolerance) })
-        })
+    let wanted = || problems.iter().flat_map(|problem| Evaluator::ALL.map(|evaluator| (problem, evaluator)));
+    let planned: Vec<Result<Plan, Error>> = wanted()
+        .map(|(problem, evaluator)| plan(problem, &Request { evaluator: Some(evaluator), ..study.request(tolerance) }))
         .collect();
-    let arms: Vec<_> = wanted
-        .iter()
-        .zip(&planned)
-        .filter_map(|(&(ghosts, _, frame), plan)| plan.as_ref().ok().map(|plan| Arm { ghosts, plan, frame }))
-        .collect();
+    let arms: Vec<_> = planned.iter().flatten().map(|plan| Arm { plan }).collect();
     let mut timings = study.bench.time(&arms, watch)?.into_iter();
     let mut points = Vec::new();
-    for (&(ghosts, evaluator, frame), plan) in wanted.iter().zip(&planned) {
-        let asked = Some(tolerance);
+    for ((problem, evaluator), plan) in wanted().zip(&planned) {
+        let (frame, asked) = (problem.frame(), Some(tolerance));
         match plan {
             Ok(plan) => {
                 let renderer = &mut study.bench.renderer;
-                renderer.set_scene(ghosts, plan)?;
-                let certificate = Certificate::measure(renderer, ghosts, plan, frame, tolerance)?;
+                let certificate = Certificate::measure(renderer, plan)?;
                 let point = Point::planned(sweep, frame, asked, plan);
                 let timing = timings.next().expect("a timing for each plan");
                 points.push(Point { measured: Some(certificate.measured), ..point.with_timing(&timing) });
             }
             Err(reason) => {
-                let point = Point::refused(sweep, frame, ghosts.len(), asked, reason);
+                let point = Point::refused(sweep, frame, problem.ghosts().len(), asked, reason);
                 points.push(Point { evaluator: Some(evaluator), ..point });
             }
         }

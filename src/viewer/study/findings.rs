@@ -87,19 +87,19 @@ impl Section {
 }
 
 /// The error that the series in the plan's period is predicted to have, for degrees about the plan's.
-pub(super) fn convergence(ghosts: &[Ghost], plan: &Plan, frame: Frame) -> Vec<Degree> {
+pub(super) fn convergence(plan: &Plan) -> Vec<Degree> {
     const STEPS: u32 = 12;
-    let series = plan.evaluator != Evaluator::Direct;
-    let around = if series { plan.degree[0].max(plan.degree[1]).max(8) } else { 64 };
+    let series = plan.evaluator() != Evaluator::Direct;
+    let around = if series { plan.degree()[0].max(plan.degree()[1]).max(8) } else { 64 };
     let most = (around + around / 2).min(HIGHEST_DEGREE);
     let request = Request {
-        period: series.then_some(plan.period),
+        period: series.then_some(plan.period()),
         evaluator: Some(Evaluator::Rows),
-        ..Request::new(frame, plan.tolerance)
+        ..Request::new(plan.tolerance)
     };
     let predict = |step: u32| {
         let degree = (most * step).div_ceil(STEPS);
-        let planned = plan::plan(ghosts, &Request { degree: Some([degree; 2]), ..request }).ok()?;
+        let planned = plan::plan(plan.problem(), &Request { degree: Some([degree; 2]), ..request }).ok()?;
         Some(Degree { degree, truncation: planned.predicted.truncation, total: planned.predicted.total() })
     };
     (1..=STEPS).filter_map(predict).collect()

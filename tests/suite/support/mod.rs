@@ -8,9 +8,11 @@ use std::cell::RefCell;
 use std::rc::{Rc, Weak};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use vglare::Result;
 use vglare::frame::Frame;
 use vglare::gpu::{Backend, Device};
-use vglare::plan::{Evaluator, Plan, Request, plan};
+use vglare::plan::{self, Evaluator, Plan, Request};
+use vglare::problem::Problem;
 use vglare::renderer::{Renderer, Settings};
 use vglare::scene::Ghost;
 
@@ -56,15 +58,30 @@ pub fn on_backend<T: Send>(backend: Backend, test: impl FnOnce(&mut Renderer) ->
     })
 }
 
+/// The cheapest plan for ghosts on a picture.
+pub fn plan(ghosts: &[Ghost], frame: Frame, request: &Request) -> Result<Plan> {
+    plan::plan(&Problem::new(ghosts, frame), request)
+}
+
+/// The same at the floor of 32-bit floats, where that lies above the tolerance.
+pub fn plan_at_least(ghosts: &[Ghost], frame: Frame, request: &Request) -> Result<Plan> {
+    plan::plan_at_least(&Problem::new(ghosts, frame), request)
+}
+
+/// The most accurate plan within a budget in milliseconds.
+pub fn plan_within(ghosts: &[Ghost], frame: Frame, request: &Request, budget: f64) -> Result<Plan> {
+    plan::plan_within(&Problem::new(ghosts, frame), request, budget)
+}
+
 /// The plan of one evaluator that leaves everything else to vglare.
 pub fn plan_with(ghosts: &[Ghost], frame: Frame, tolerance: f64, evaluator: Evaluator) -> Plan {
-    let request = Request { evaluator: Some(evaluator), ..Request::new(frame, tolerance) };
-    plan(ghosts, &request).unwrap_or_else(|error| panic!("{evaluator} at {tolerance:e}: {error}"))
+    let request = Request { evaluator: Some(evaluator), ..Request::new(tolerance) };
+    plan(ghosts, frame, &request).unwrap_or_else(|error| panic!("{evaluator} at {tolerance:e}: {error}"))
 }
 
 /// The glare alone, at every pixel of the frame's window.
-pub fn glare(renderer: &mut Renderer, ghosts: &[Ghost], plan: &Plan, frame: Frame) -> Vec<[f32; 4]> {
-    renderer.set_scene(ghosts, plan).unwrap();
+pub fn glare(renderer: &mut Renderer, plan: &Plan, frame: Frame) -> Vec<[f32; 4]> {
+    renderer.set_scene(plan).unwrap();
     renderer.glare(frame, &Settings::default()).unwrap()
 }
 

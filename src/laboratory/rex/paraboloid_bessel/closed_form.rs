@@ -10,6 +10,7 @@ use super::{CASES, Measured, PLACES, Setting, WEIGHT, largest, timed};
 use crate::Result;
 use crate::frame::Frame;
 use crate::plan::{Evaluator, Request, plan};
+use crate::problem::Problem;
 use crate::renderer::{Renderer, Settings};
 use crate::series::fourier_bessel::truncation;
 use crate::series::{kappa, special};
@@ -94,8 +95,8 @@ pub(super) fn fields(lab: &mut Lab, setting: &Setting, size: u32, graf: &Measure
         table.row([how, terms.to_string(), format!("{error:.2e}"), format!("{seconds:.3}"), format!("{ratio:.1}")]);
     };
     row("Graf's form".into(), terms * (highest + 1), graf.error, graf.seconds);
-    let ghosts = setting.ghosts();
     let (frame, degree, period) = (Frame::full(size, size), degree(setting, terms), period(setting));
+    let problem = Problem::new(setting.ghosts(), frame);
     let mut renderer = Renderer::new(&lab.device()?)?;
     for evaluator in [Evaluator::Rows, Evaluator::Grid] {
         let request = Request {
@@ -103,17 +104,17 @@ pub(super) fn fields(lab: &mut Lab, setting: &Setting, size: u32, graf: &Measure
             degree: Some([degree; 2]),
             evaluator: Some(evaluator),
             // For the lattice: finer than the series is off by anyway.
-            ..Request::new(frame, graf.error)
+            ..Request::new(graf.error)
         };
-        let plan = plan(&ghosts, &request)?;
+        let plan = plan(&problem, &request)?;
         let (_, seconds, pixels) = timed(|| {
             renderer.forget_scene();
-            renderer.set_scene(&ghosts, &plan)?;
+            renderer.set_scene(&plan)?;
             renderer.glare(frame, &Settings::default())
         })?;
         let errors = setting.errors(frame, |index| pixels[index][0].into());
         let error = largest(&errors) / setting.bell.peak;
-        row(format!("closed form of degree {degree}, by {evaluator}"), plan.terms as u32, error, seconds);
+        row(format!("closed form of degree {degree}, by {evaluator}"), plan.terms() as u32, error, seconds);
     }
     Ok(table)
 }
