@@ -347,6 +347,7 @@ impl Renderer {
     /// Finds the range where the settings ask for it, and gives the composite's uniforms.
     fn start(&mut self, frame: Frame, settings: &Settings) -> Result<Composite> {
         let plan = self.plan()?;
+        settings.check(plan.scale)?;
         let uniforms = convert::uniforms(plan, settings);
         if settings.normalize == Normalize::Minmax {
             self.reduce(frame)?;
