@@ -134,10 +134,10 @@ pub fn measure(
     let mut looks = Looks::default();
     stage(&mut |watch| looks::looks(&mut study, &points, &front, watch).map(|found| looks = found))?;
     let mut recommendation = front::recommend(&points);
-    if let Some(found) = &mut recommendation {
-        if let Some(measured) = study.everywhere(found.tolerance, [found.width, found.height])? {
-            (found.measured, found.everywhere) = (found.measured.max(measured), true);
-        }
+    if let Some(found) = &mut recommendation
+        && let Some(measured) = study.everywhere(found.tolerance, [found.width, found.height])?
+    {
+        (found.measured, found.everywhere) = (found.measured.max(measured), true);
     }
     let seen = front::choice(&points).and_then(|point| looks.delta_e(point));
     // Whichever evaluator the planner takes, the phases are those of a series.
