@@ -213,6 +213,7 @@ impl<'a> Job<'a> {
         if !std::mem::replace(&mut computer.warned, true) {
             self.warnings.extend(planned.warnings.iter().cloned());
         }
+        self.settings.check(planned.plan.scale)?;
         self.info = Some(computer.info.clone());
         self.warnings.extend(self.absurd(&planned.plan));
 

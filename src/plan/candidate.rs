@@ -82,8 +82,7 @@ fn with_rounding(
 ) -> Result<Plan> {
     let weighed = &survey.weighed;
     // With the whole of the series given, there is nothing left to plan: the error is predicted as it comes.
-    let between = evaluator != Evaluator::Grid || request.oversampling.is_some();
-    let given = request.period.is_some() && request.degree.is_some() && between;
+    let given = request.period.is_some() && request.degree.is_some();
     let usable = request.tolerance - rounding;
     // A direct sum leaves out nothing but ghosts; a series needs room for its own bounds.
     let needed = if evaluator == Evaluator::Direct { share::DROPPED } else { NEEDED };

@@ -148,13 +148,19 @@ fn excess(predicted: &Prediction, usable: f64) -> f64 {
 }
 
 impl Brief<'_> {
+    /// Whether nothing of the series is left to plan, and its error comes as it comes.
+    fn given(&self) -> bool {
+        self.request.period.is_some() && self.request.degree.is_some()
+    }
+
     /// The series with terms and a lattice, each within its part of what may be used up.
     fn with_lattice(&self, truncation: f64, interpolation: f64) -> Result<(Series, Prediction)> {
         let mut terms = self.terms(truncation)?;
         let degree = [terms.counts.len() as u32 - 1, terms.counts[0] - 1];
         let marginals = terms.marginals.take();
         let marginals = marginals.unwrap_or_else(|| Marginals::by_weights(&terms.groups, degree, self.period));
-        let budget = self.usable * interpolation;
+        // Where the series is given there may be nothing left: then a lattice is to cost about what rounding does.
+        let budget = interpolation * self.usable.max(if self.given() { self.predicted.single() } else { 0.0 });
         let over = self.request.oversampling;
         let lattice = lattice::coarsest(degree, self.period, &marginals, self.frame, over, budget)?;
         self.finish(terms, Some(lattice))

@@ -133,6 +133,7 @@ impl Picture {
     /// Finds the range where the settings ask for it, and gives the composite's uniforms.
     pub(super) fn start(&mut self, frame: Frame, settings: &Settings) -> Result<Composite> {
         let plan = self.field.plan()?;
+        settings.check(plan.scale)?;
         let uniforms = convert::uniforms(plan, settings);
         if settings.normalize == Normalize::Minmax {
             self.field.reduce(frame)?;
