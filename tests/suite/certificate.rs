@@ -60,8 +60,8 @@ fn a_sample_is_low_by_no_more_than_two_in_nearly_all_scenes() {
     }
     let low = on_backend(Backend::OsMesa, |renderer| {
         let low = |plan: &&Plan| {
-            let whole = Certificate::measure_all(renderer, plan, |_| ()).unwrap().measured;
-            Certificate::measure(renderer, plan).unwrap().measured < 0.5 * whole
+            let whole = Certificate::measure_all(&mut renderer.field, plan, |_| ()).unwrap().measured;
+            Certificate::measure(&mut renderer.field, plan).unwrap().measured < 0.5 * whole
         };
         plans.iter().filter(low).count()
     });
