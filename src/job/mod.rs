@@ -163,7 +163,7 @@ impl<'a> Job<'a> {
     /// Finds what glares in a photo.
     ///
     /// # Errors
-    /// Those of [`settings`].
+    /// Those of [`settings()`].
     pub fn new(look: &'a Look, photo: Photo, mut stages: Stages) -> Result<Self> {
         let bad = stages.time("survey", || photo::survey(&photo));
         let scene = stages.time("lights", || look.gather(&photo));

@@ -7,7 +7,7 @@
 //! | [`rex`] | the research prototype's experiments, as figures and numbers |
 //! | [`tradeoff`] | a photo and its ghosts → accuracy against time, measured here |
 //! | [`harmonics`] | a photo → its spherical harmonic coefficients |
-//! | [`bench`] | what each pass costs here, as ratios |
+//! | [`mod@bench`] | what each pass costs here, as ratios |
 //! | [`calibrate`] | the cost model of plans, fitted to this machine |
 
 pub mod bench;

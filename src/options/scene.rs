@@ -1,5 +1,8 @@
 //! Everything that glares in one run: from the photo, from files, from presets.
 
+// The help says [[light]], as files do, and rustdoc takes that for a link.
+#![allow(rustdoc::broken_intra_doc_links)]
+
 use std::path::PathBuf;
 
 use glam::DVec2;

@@ -1,6 +1,6 @@
 //! From linear light to the integer samples of PNG, JPEG and TIFF.
 //!
-//! [IGN] Jorge Jimenez, "Next generation post processing in Call of Duty: Advanced Warfare", SIGGRAPH 2014:
+//! \[IGN\] Jorge Jimenez, "Next generation post processing in Call of Duty: Advanced Warfare", SIGGRAPH 2014:
 //! interleaved gradient noise.
 
 use glam::{Mat3A, Vec3A};
@@ -110,7 +110,7 @@ pub(super) fn has_straight_alpha(photo: &Photo) -> bool {
     photo.source.alpha == Alpha::Straight
 }
 
-/// [IGN]: noise in 0..1 without large lumps.
+/// \[IGN\]: noise in 0..1 without large lumps.
 fn gradient_noise(x: f32, y: f32) -> f32 {
     (52.982_918 * (0.067_110_56 * x + 0.005_837_15 * y).fract()).fract()
 }

@@ -1,6 +1,6 @@
 //! Pictures in and out: linear light, RGBA f32.
 //!
-//! [`read`] takes OpenEXR, Radiance HDR, PFM, TIFF, PNG and JPEG, told apart by their content; [`write()`] writes the
+//! [`read()`] takes OpenEXR, Radiance HDR, PFM, TIFF, PNG and JPEG, told apart by their content; [`write()`] writes the
 //! same six, told apart by the name's extension.
 //!
 //! # What the numbers mean
@@ -64,7 +64,7 @@ pub use write::{WriteOptions, check_name, check_target, largest_value, write, wr
 
 use crate::frame::Frame;
 
-/// Why a decoder or encoder gave up; [`read`] and [`write()`] add the file's name.
+/// Why a decoder or encoder gave up; [`read()`] and [`write()`] add the file's name.
 type Reason = Box<dyn std::error::Error + Send + Sync>;
 
 /// A picture in linear light.

@@ -1,8 +1,8 @@
 //! Tone maps: from scene-linear light to what a display can show.
 //!
-//! [REINHARD] Reinhard, Stark, Shirley, Ferwerda, "Photographic tone reproduction for digital images", 2002.
-//! [HILL] Stephen Hill's fit of the ACES RRT and sRGB ODT, BakingLab, ACES.hlsl (MIT licence), 2016.
-//! [AGX] Troy Sobotka's AgX; [WRENSCH] its minimal approximation by Benjamin Wrensch, iolite-engine.com, 2023.
+//! \[REINHARD\] Reinhard, Stark, Shirley, Ferwerda, "Photographic tone reproduction for digital images", 2002.
+//! \[HILL\] Stephen Hill's fit of the ACES RRT and sRGB ODT, BakingLab, ACES.hlsl (MIT licence), 2016.
+//! \[AGX\] Troy Sobotka's AgX; \[WRENSCH\] its minimal approximation by Benjamin Wrensch, iolite-engine.com, 2023.
 
 use glam::{Mat3A, Vec3A};
 

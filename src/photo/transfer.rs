@@ -1,8 +1,8 @@
 //! Transfer functions: from the numbers in a file to light, and for sRGB back.
 //!
-//! [SRGB] IEC 61966-2-1:1999; [709] ITU-R BT.709-6, item 1.2; [2100] ITU-R BT.2100-2, tables 4 and 5;
-//! [2408] ITU-R BT.2408-7, section 2.1: reference white is 203 cd/m², and 75 % of the HLG signal;
-//! [ICC] ICC.1:2022, sections 10.6 and 10.18.
+//! \[SRGB\] IEC 61966-2-1:1999; \[709\] ITU-R BT.709-6, item 1.2; \[2100\] ITU-R BT.2100-2, tables 4 and 5;
+//! \[2408\] ITU-R BT.2408-7, section 2.1: reference white is 203 cd/m², and 75 % of the HLG signal;
+//! \[ICC\] ICC.1:2022, sections 10.6 and 10.18.
 
 use std::sync::Arc;
 
@@ -11,19 +11,19 @@ use std::sync::Arc;
 pub(super) enum Curve {
     /// They are linear already.
     Linear,
-    /// [SRGB]
+    /// \[SRGB\]
     Srgb,
     /// A power: light = value ^ exponent.
     Power(f64),
-    /// [709], inverse of the camera's function.
+    /// \[709\], inverse of the camera's function.
     Rec709,
-    /// [2100] PQ, in units of 203 cd/m².
+    /// \[2100\] PQ, in units of 203 cd/m².
     Pq,
-    /// [2100] HLG, scene light in units of the light of a 75 % signal.
+    /// \[2100\] HLG, scene light in units of the light of a 75 % signal.
     Hlg,
-    /// [ICC] 10.18, function type 4, of which the others are cases: parameters g, a, b, c, d, e, f.
+    /// \[ICC\] 10.18, function type 4, of which the others are cases: parameters g, a, b, c, d, e, f.
     Parametric([f64; 7]),
-    /// [ICC] 10.6: light at equal steps of 0..1, two at least, straight in between and beyond.
+    /// \[ICC\] 10.6: light at equal steps of 0..1, two at least, straight in between and beyond.
     Table(Arc<[f64]>),
 }
 
@@ -74,7 +74,7 @@ fn interpolated(steps: &[f64], v: f64) -> f64 {
     if slope == 0.0 && !v.is_nan() { steps[first] } else { steps[first] + slope * (place - first as f64) }
 }
 
-/// [2100] table 4: cd/m² / 10000 of a PQ signal.
+/// \[2100\] table 4: cd/m² / 10000 of a PQ signal.
 fn pq(v: f64) -> f64 {
     let (m1, m2) = (2610.0 / 16384.0, 2523.0 / 4096.0 * 128.0);
     let (c1, c2, c3) = (3424.0 / 4096.0, 2413.0 / 4096.0 * 32.0, 2392.0 / 4096.0 * 32.0);
@@ -82,13 +82,13 @@ fn pq(v: f64) -> f64 {
     ((e - c1).max(0.0) / (c2 - c3 * e)).powf(1.0 / m1)
 }
 
-/// [2100] table 5: scene light in 0..1 of an HLG signal.
+/// \[2100\] table 5: scene light in 0..1 of an HLG signal.
 fn hlg(v: f64) -> f64 {
     let (a, b, c) = (0.178_832_77, 0.284_668_92, 0.559_910_73);
     if v <= 0.5 { v * v / 3.0 } else { (((v - c) / a).exp() + b) / 12.0 }
 }
 
-/// [SRGB] the encoded value of `light` in 0..1.
+/// \[SRGB\] the encoded value of `light` in 0..1.
 pub(crate) fn srgb_encode(light: f32) -> f32 {
     if light <= 0.003_130_8 { light * 12.92 } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 }
 }

@@ -85,7 +85,7 @@ pub fn write(path: &Path, photo: &Photo, options: &WriteOptions) -> Result<()> {
 /// its name.
 ///
 /// # Errors
-/// Those of [`write`], and [`Error::Cancelled`]; nothing is left behind then, unless `path` is a pipe.
+/// Those of [`write()`], and [`Error::Cancelled`]; nothing is left behind then, unless `path` is a pipe.
 pub fn write_unless(path: &Path, photo: &Photo, options: &WriteOptions, cancelled: impl Fn() -> bool) -> Result<()> {
     let plan = plan(path, photo, options)?;
     plan.target.write(&cancelled, |sink| plan.encode(sink, photo))

@@ -66,7 +66,7 @@ impl Profile {
     ///
     /// # Errors
     /// What is wrong with the rows, for people: radii that do not ascend, that are beyond 1e15 or, but for 0, below 1e-15,
-    /// fewer than two rows or more than [`MOST_ROWS`], numbers that are not finite, nothing but zeros.
+    /// fewer than two rows or more than `MOST_ROWS`, numbers that are not finite, nothing but zeros.
     pub fn new(rows: &[[f64; 2]]) -> Result<Self, String> {
         if rows.len() < 2 || rows.len() > MOST_ROWS {
             return Err(format!("a profile has 2 to {MOST_ROWS} rows, and this one has {}", rows.len()));

@@ -44,7 +44,7 @@ pub struct Viewing {
     pub zoom: Zoom,
     /// What is seen.
     pub shows: Shows,
-    /// Stops, −[`MOST_EXPOSURE`] to [`MOST_EXPOSURE`].
+    /// Stops, −`MOST_EXPOSURE` to `MOST_EXPOSURE`.
     pub exposure: f64,
     /// How light comes into the display's range.
     pub tone_map: ToneMap,

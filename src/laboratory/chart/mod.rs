@@ -45,7 +45,7 @@ pub enum Stroke {
 /// Points of one kind, in their order along the line. A point that has no place, NaN say, breaks the line.
 #[derive(Debug, Clone)]
 pub struct Series {
-    /// What the legend calls it; empty keeps it out.
+    /// What the legend calls it.
     pub label: String,
     /// x and y of each point, in the axes' units.
     pub points: Vec<[f64; 2]>,

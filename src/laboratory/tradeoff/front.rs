@@ -43,7 +43,7 @@ pub struct Recommendation {
     pub delta_e_max: f64,
     /// Of the tone-mapped composite, in dB.
     pub psnr_db: f64,
-    /// Whether its largest ΔE2000 is below [`VISIBLE`].
+    /// Whether its largest ΔE2000 is below `VISIBLE`.
     pub invisible: bool,
 }
 

@@ -1,6 +1,6 @@
 //! Pixels at which plans are held against the direct sum in f64: the field, and the picture as it is shown.
 //!
-//! [CIE] CIE 142:2001, "Improvement to industrial colour-difference evaluation": ΔE2000. Colours that are 1 apart are
+//! \[CIE\] CIE 142:2001, "Improvement to industrial colour-difference evaluation": ΔE2000. Colours that are 1 apart are
 //! about what a trained eye tells apart side by side.
 
 use palette::color_difference::Ciede2000 as _;

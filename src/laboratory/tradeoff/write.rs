@@ -25,7 +25,7 @@ pub fn check(folder: &Path, force: bool) -> Result<()> {
     target::check(&folder.join(INDEX), true)
 }
 
-/// Whether none of what [`write`] writes into a folder would replace a file that is read.
+/// Whether none of what [`write()`] writes into a folder would replace a file that is read.
 ///
 /// # Errors
 /// [`Error::Usage`] where it would.

@@ -7,7 +7,7 @@ use super::super::Reason;
 /// A profile larger than this is none: the largest in use, of printers, have a few MiB.
 pub(in super::super) const LARGEST: usize = 16 << 20;
 
-/// [ICC] 7.2: the header; after it the number of tags, and for each its signature, offset and size.
+/// \[ICC\] 7.2: the header; after it the number of tags, and for each its signature, offset and size.
 const HEADER: usize = 128;
 const TAG: usize = 12;
 
@@ -65,8 +65,8 @@ pub fn parse(icc: &[u8]) -> Result<ColorProfile, Reason> {
 
 /// Gives a profile the version that moxcms tells the encoding of a table's Lab by.
 ///
-/// It is the table's type that tells: [ICC] 10.10 has lut16Type keep the encoding of version 2 in profiles of version 4,
-/// and 10.11 gives lut8Type one that, as a fraction, is that of version 4.
+/// It is the table's type that tells: \[ICC\] 10.10 has lut16Type keep the encoding of version 2 in profiles of version
+/// 4, and 10.11 gives lut8Type one that, as a fraction, is that of version 4.
 pub(in super::super) fn tell_lab(icc: &mut [u8]) {
     // In the order in which they are looked for.
     let table = [b"A2B1", b"A2B0", b"A2B2"].into_iter().find_map(|name| tags(icc).find(|tag| tag[..4] == *name));
@@ -87,7 +87,7 @@ pub fn space(icc: &[u8]) -> String {
     }
 }
 
-/// What a profile calls itself, if that can be read: [ICC] 9.2.41, as text of version 2 or 4.
+/// What a profile calls itself, if that can be read: \[ICC\] 9.2.41, as text of version 2 or 4.
 pub fn name(icc: &[u8]) -> Option<String> {
     let range = tags(icc).find(|tag| tag[..4] == *b"desc").and_then(range)?;
     let tag = icc.get(range.start..range.end.min(icc.len()))?;

@@ -1,6 +1,6 @@
 //! ICC profiles: from a profile's encoding to linear light of Rec.709 primaries.
 //!
-//! [ICC] ICC.1:2022, Image technology colour management, profile version 4.4.
+//! \[ICC\] ICC.1:2022, Image technology colour management, profile version 4.4.
 //!
 //! Profiles are parsed by moxcms. Those of three curves and a matrix, or of one curve for grey, are evaluated here in
 //! f64: black is exactly black. Those of tables (A2B0, A2B1, A2B2) go through moxcms, relative colorimetric.

@@ -1,4 +1,4 @@
-//! Profiles of curves: [ICC] F.3 for three of them and a matrix, F.2 for grey.
+//! Profiles of curves: \[ICC\] F.3 for three of them and a matrix, F.2 for grey.
 
 use glam::{DMat3, DVec3};
 use moxcms::{CicpProfile, ColorProfile, DataColorSpace, ToneReprCurve, Xyzd};
@@ -67,7 +67,7 @@ fn of_code_points(code: &CicpProfile) -> Option<Shaper> {
     Some(Shaper::new([curve.clone(), curve.clone(), curve], Some(primaries)))
 }
 
-/// [ICC] 10.6 and 10.18.
+/// \[ICC\] 10.6 and 10.18.
 ///
 /// # Errors
 /// For numbers that are no curve.
@@ -99,7 +99,7 @@ pub fn curve(trc: &ToneReprCurve) -> Result<Curve, Reason> {
     Ok(curve.recognised())
 }
 
-/// A curve whose values are lightness, CIE 1976 L* / 100, as one of light: [ICC] F.2 with PCSLAB.
+/// A curve whose values are lightness, CIE 1976 L* / 100, as one of light: \[ICC\] F.2 with PCSLAB.
 fn of_lightness(curve: &Curve) -> Curve {
     const STEPS: u32 = 4096;
     let light = |lightness: f64| {

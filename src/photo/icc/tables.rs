@@ -11,7 +11,7 @@ use moxcms::{
 use super::super::{Primaries, Reason};
 use super::shape;
 
-/// [ICC] 7.2.16: the white of the PCS.
+/// \[ICC\] 7.2.16: the white of the PCS.
 const D50: DVec3 = DVec3::new(0.9642, 1.0, 0.8249);
 
 /// The way through a profile's tables.
@@ -20,7 +20,7 @@ pub struct Tables {
     grey: bool,
 }
 
-/// The tables of a profile, if it has any; they go before curves and a matrix: [ICC] 8.10.2.
+/// The tables of a profile, if it has any; they go before curves and a matrix: \[ICC\] 8.10.2.
 pub fn of(profile: &ColorProfile) -> Option<Result<Tables, Reason>> {
     let has = [&profile.lut_a_to_b_perceptual, &profile.lut_a_to_b_colorimetric, &profile.lut_a_to_b_saturation];
     has.iter().any(|table| table.is_some()).then(|| Tables::new(profile))

@@ -1,6 +1,6 @@
 //! From the coded data to samples, grey or RGB, by `libjpeg-turbo-rs`.
 //!
-//! [APP14] Adobe Technical Note 5116, section 18: CMYK is stored inverted where Adobe's marker stands.
+//! \[APP14\] Adobe Technical Note 5116, section 18: CMYK is stored inverted where Adobe's marker stands.
 
 use libjpeg_turbo_rs::{
     ColorSpace, DecodeLimits, DecodeWarning, Decoder, JpegError, PixelFormat, decompress_12bit_with_limits,

@@ -1,7 +1,7 @@
 //! Gain maps: a second, smaller JPEG behind the picture says how much brighter than the plain picture each place is.
 //!
-//! [UHDR] Ultra HDR Image Format 1.1, "Gain map decoding"; [ADOBE] Adobe's gain map specification 1.0, its XMP;
-//! [ISO] ISO 21496-1, whose metadata are binary: layout as in libultrahdr's gainmapmetadata.cpp.
+//! \[UHDR\] Ultra HDR Image Format 1.1, "Gain map decoding"; \[ADOBE\] Adobe's gain map specification 1.0, its XMP;
+//! \[ISO\] ISO 21496-1, whose metadata are binary: layout as in libultrahdr's gainmapmetadata.cpp.
 //!
 //! The map is applied in full, as a display would show it whose white can be as much brighter as the file asks for:
 //! the photo is then light beyond display white, and counts as scene-linear.
@@ -114,7 +114,7 @@ impl Map {
     }
 }
 
-/// [UHDR]: light = (light + offset) × 2 ^ gain − offset, in the plain picture's own primaries.
+/// \[UHDR\]: light = (light + offset) × 2 ^ gain − offset, in the plain picture's own primaries.
 fn brighten(photo: &mut Photo, map: &Map, recipe: &Recipe, to_rec709: Option<DMat3>) -> String {
     let is_grey = map.channels == 1 && recipe.is_grey();
     // One gain for all three colours is the same in any primaries.

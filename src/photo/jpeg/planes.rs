@@ -3,7 +3,7 @@
 //! The decoder does this itself for the usual samplings; this is for the others: luma that is sampled less than chroma,
 //! factors that do not divide, and scans that hold some of the components.
 //!
-//! [JFIF] ITU-T T.871, section 7: YCbCr.
+//! \[JFIF\] ITU-T T.871, section 7: YCbCr.
 
 use super::walk::Frame;
 
@@ -62,7 +62,7 @@ impl Steps {
     }
 }
 
-/// [JFIF] Y, Cb and Cr become R, G and B; a fourth component stays.
+/// \[JFIF\] Y, Cb and Cr become R, G and B; a fourth component stays.
 pub(super) fn ycc_to_rgb(pixels: &mut [u8], count: usize) {
     for pixel in pixels.chunks_exact_mut(count) {
         let [y, cb, cr] = [0, 1, 2].map(|i| f32::from(pixel[i]));

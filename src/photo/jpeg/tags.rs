@@ -1,7 +1,7 @@
 //! What a JPEG file says about its colours and its orientation: ICC profile, Exif, XMP.
 //!
-//! [ICC] ICC.1:2022 annex B.4: a profile in pieces. [DCF] JEITA CP-3461B (DCF 2.0), section 5.3: Adobe RGB by "R03".
-//! [EXIF] CIPA DC-008, 4.6.5: ColorSpace. [XMP] XMP specification part 3, 1.1.3.
+//! \[ICC\] ICC.1:2022 annex B.4: a profile in pieces. \[DCF\] JEITA CP-3461B (DCF 2.0), section 5.3: Adobe RGB by
+//! "R03". \[EXIF\] CIPA DC-008, 4.6.5: ColorSpace. \[XMP\] XMP specification part 3, 1.1.3.
 
 use exif::{Context, Exif, In, Reader, Tag, Value};
 use image::metadata::Orientation;
@@ -59,7 +59,7 @@ fn orientation(exif: &Exif) -> Orientation {
     value.and_then(Orientation::from_exif).unwrap_or(Orientation::NoTransforms)
 }
 
-/// [DCF]: ColorSpace is 65535, and the interoperability index "R03". Some writers say 2.
+/// \[DCF\]: ColorSpace is 65535, and the interoperability index "R03". Some writers say 2.
 fn space(exif: &Exif) -> Space {
     const ADOBE_RGB: u32 = 2;
     const UNCALIBRATED: u32 = 65535;
@@ -100,7 +100,7 @@ pub(super) fn encoding(walk: &Walk, shown: &Shown, options: &ReadOptions, notes:
     Encoding::new(curve, (shown.space == Space::AdobeRgb).then_some(Primaries::ADOBE_RGB))
 }
 
-/// [ICC] the profile, put together; the error says how many of its pieces are there.
+/// \[ICC\] the profile, put together; the error says how many of its pieces are there.
 fn embedded(walk: &Walk) -> Result<Option<Vec<u8>>, String> {
     let mut pieces: Vec<(u8, u8, &[u8])> = Vec::new();
     for piece in walk.named(APP2, b"ICC_PROFILE\0") {
@@ -119,7 +119,7 @@ fn embedded(walk: &Walk) -> Result<Option<Vec<u8>>, String> {
     Ok(Some(pieces.into_iter().flat_map(|(_, _, data)| data).copied().collect()))
 }
 
-/// [XMP] the main packet, if it is text.
+/// \[XMP\] the main packet, if it is text.
 pub(super) fn xmp<'a>(walk: &Walk<'a>) -> Option<&'a str> {
     let packet = walk.named(APP1, b"http://ns.adobe.com/xap/1.0/\0").next()?;
     std::str::from_utf8(packet).ok().map(|text| text.trim_end_matches('\0'))

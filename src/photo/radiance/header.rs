@@ -1,4 +1,4 @@
-//! The header of a Radiance picture: [FMT] Greg Ward, "Radiance File Formats", the section on pictures.
+//! The header of a Radiance picture: \[FMT\] Greg Ward, "Radiance File Formats", the section on pictures.
 
 use std::io::{BufRead, Read as _, Write};
 

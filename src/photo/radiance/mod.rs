@@ -1,6 +1,6 @@
 //! Radiance HDR: the header is read and written here, the pixels go through the `image` crate.
 //!
-//! [FMT] Greg Ward, "Radiance File Formats": radiance-online.org, refer/filefmts.pdf.
+//! \[FMT\] Greg Ward, "Radiance File Formats": radiance-online.org, refer/filefmts.pdf.
 //!
 //! Pixels stay as they are stored: the header's EXPOSURE and COLORCORR, which they have been multiplied by, are carried
 //! like VIEW and all else, and written back to Radiance HDR; other formats get the pixels without it. PRIMARIES are

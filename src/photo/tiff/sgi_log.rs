@@ -1,7 +1,7 @@
 //! LogL and LogLuv: light by its logarithm, packed in runs.
 //!
-//! [LOGLUV] G. Ward Larson, "LogLuv encoding for full-gamut, high-dynamic range images", Journal of Graphics Tools 3(1),
-//! 1998: the encodings of 16 and 32 bits. The runs are those of libtiff's `COMPRESSION_SGILOG`.
+//! \[LOGLUV\] G. Ward Larson, "LogLuv encoding for full-gamut, high-dynamic range images", Journal of Graphics Tools
+//! 3(1), 1998: the encodings of 16 and 32 bits. The runs are those of libtiff's `COMPRESSION_SGILOG`.
 
 use glam::{DMat3, DVec3};
 
@@ -41,14 +41,14 @@ fn unpack_run(packed: &[u8], mut put: impl FnMut(u8)) -> Option<&[u8]> {
     Some(rest)
 }
 
-/// [LOGLUV] the luminance of a 16-bit code: a sign and 15 bits of logarithm, 0 for none.
+/// \[LOGLUV\] the luminance of a 16-bit code: a sign and 15 bits of logarithm, 0 for none.
 pub(super) fn luminance(code: u16) -> f64 {
     let size = code & 0x7fff;
     let light = if size == 0 { 0.0 } else { ((f64::from(size) + 0.5) / 256.0 - 64.0).exp2() };
     if code & 0x8000 == 0 { light } else { -light }
 }
 
-/// [LOGLUV] the colour of a 32-bit code: 16 bits of luminance, 8 each of u' and v'; in Rec.709, white to white.
+/// \[LOGLUV\] the colour of a 32-bit code: 16 bits of luminance, 8 each of u' and v'; in Rec.709, white to white.
 pub(super) fn colour(code: u32, to_rec709: &DMat3) -> [f32; 3] {
     let luminance = luminance((code >> 16) as u16);
     let u = (f64::from(code >> 8 & 0xff) + 0.5) / 410.0;

@@ -57,7 +57,7 @@ pub fn cosine_factor(omega: f32, n: u32, fourth_power: bool) -> f64 {
     4.0 * (PI * n * w / 2.0).sin() / (4.0 * n * w - f64::from(power))
 }
 
-/// `ka` of 000's C++ for m = 0 .. `rows` and n = 0 .. `columns`, loop by loop: [m][n].
+/// `ka` of 000's C++ for m = 0 .. `rows` and n = 0 .. `columns`, loop by loop: \[m\]\[n\].
 ///
 /// `n_ka` and `m_ka` begin with 1 and become 2 where they, instead of n and m, are not 0: at once. κ is 4 everywhere, so
 /// that the field of a bell u(x) v(y) becomes (u + α_0)(v + α_0): a cross and a haze that never end.

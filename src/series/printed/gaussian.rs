@@ -7,13 +7,13 @@ use glam::DVec2;
 use super::{even_table, kappa_by_or};
 use crate::series::kappa;
 
-/// p and a1 … a5 of [AS] 7.1.26.
+/// p and a1 … a5 of \[AS\] 7.1.26.
 ///
-/// [AS] Abramowitz and Stegun, Handbook of Mathematical Functions, page 299.
+/// \[AS\] Abramowitz and Stegun, Handbook of Mathematical Functions, page 299.
 const P: f64 = 0.327_591_1;
 const A: [f64; 5] = [0.254_829_592, -0.284_496_736, 1.421_413_741, -1.453_152_027, 1.061_405_429];
 
-/// erf by [AS] 7.1.26, for any x: odd, as the book's x ≥ 0 leaves to the reader.
+/// erf by \[AS\] 7.1.26, for any x: odd, as the book's x ≥ 0 leaves to the reader.
 ///
 /// The notes print |ε| ≤ 5·10⁻⁷ for it; the book says 1.5·10⁻⁷, and f64 reaches 1.394·10⁻⁷ (at x = 0.045).
 pub fn erf(x: f64) -> f64 {

@@ -64,7 +64,7 @@ impl State {
     /// Keeps a look instead of the one that was kept before.
     ///
     /// # Errors
-    /// Those of [`checked_toml`] and [`target::remember_text`], and [`Error::Write`] where the folder cannot be made.
+    /// Those of `checked_toml` and `target::remember_text`, and [`Error::Write`] where the folder cannot be made.
     pub fn keep_look(&self, look: &Look) -> Result<()> {
         let path = self.place(LOOK)?;
         target::remember_text(&path, &checked_toml(&path, &look.to_scene())?)
