@@ -7,7 +7,7 @@ use super::effort::Effort;
 use super::period::{self, Reach};
 use super::series::{self, Wide};
 use super::weigh::{self, Weighed};
-use super::{Evaluator, Group, Layer, Plan, Prediction, Request, cost, rounding, share, terms};
+use super::{Evaluator, Group, Layer, Plan, Precision, Prediction, Request, cost, direct, rounding, share, terms};
 use crate::problem::Problem;
 use crate::series::{Bell, Modes};
 use crate::{Error, Result};
@@ -20,9 +20,9 @@ pub(super) struct Survey {
     pub weighed: Weighed,
     pub groups: Vec<Group>,
     pub reaches: Vec<Reach>,
-    /// Groups that are no part of the series, and what f32 costs their sum.
+    /// Groups that are no part of the series, and what floats of the precision cost their sum.
     pub summed: Vec<Group>,
-    pub summed_rounding: f64,
+    pub summed_in: (Precision, f64),
     /// What planning may cost, and whether that of the bells is in it.
     pub effort: Effort,
     pub prepared: Cell<bool>,
@@ -38,7 +38,7 @@ impl Survey {
             groups,
             reaches,
             summed: Vec::new(),
-            summed_rounding: 0.0,
+            summed_in: Default::default(),
             effort: Effort::unlimited(),
             prepared: Cell::new(false),
         }
@@ -79,28 +79,39 @@ pub(super) fn candidate(
     request: &Request,
     evaluator: Evaluator,
 ) -> Result<Plan> {
+    if evaluator == Evaluator::Direct {
+        let bounds = direct::bounds(problem, &survey.weighed);
+        let single = with_rounding(problem, (Precision::Single, bounds.single), survey, wide, request, evaluator);
+        return match single {
+            Err(Error::ToleranceBelowFloor { .. }) => {
+                with_rounding(problem, (Precision::Double, bounds.double), survey, wide, request, evaluator)
+            }
+            single => single,
+        };
+    }
     // What rounding costs depends on the degree, and the degree on what rounding leaves of the tolerance.
     let mut degree = request.degree.map_or(rounding::SEEN_DEGREE, |[n, m]| n.max(m));
     loop {
-        let mut rounding = rounding::bound(problem, &survey.weighed, evaluator, degree) + survey.summed_rounding;
+        let (precision, summed) = survey.summed_in;
+        let mut rounding = rounding::bound(&survey.weighed, evaluator, degree) + summed;
         if rounding > (1.0 - NEEDED) * request.tolerance
-            && let Some(wide) = wide.filter(|_| evaluator != Evaluator::Direct)
+            && let Some(wide) = wide
         {
-            rounding = rounding.min(wide.rounding(evaluator) + survey.summed_rounding);
+            rounding = rounding.min(wide.rounding(evaluator) + summed);
         }
-        let plan = with_rounding(problem, rounding, survey, wide, request, evaluator)?;
+        let plan = with_rounding(problem, (precision, rounding), survey, wide, request, evaluator)?;
         let needed = plan.degree()[0].max(plan.degree()[1]);
-        if evaluator == Evaluator::Direct || needed <= degree {
+        if needed <= degree {
             return Ok(plan);
         }
         degree = needed + needed / 16;
     }
 }
 
-/// The plan of one evaluator that rounding costs so much.
+/// The plan of one evaluator that rounding costs so much, its summed ghosts in floats of this precision.
 fn with_rounding(
     problem: &Arc<Problem>,
-    rounding: f64,
+    (precision, rounding): (Precision, f64),
     survey: &Survey,
     wide: Option<&Wide>,
     request: &Request,
@@ -108,8 +119,7 @@ fn with_rounding(
 ) -> Result<Plan> {
     let weighed = &survey.weighed;
     // With the whole of the series given, there is nothing left to plan: the error is predicted as it comes.
-    let between = evaluator != Evaluator::Grid || request.oversampling.is_some();
-    let given = request.period.is_some() && request.degree.is_some() && between;
+    let given = request.period.is_some() && request.degree.is_some();
     let usable = request.tolerance - rounding;
     // A direct sum leaves out nothing but ghosts; a series needs room for its own bounds.
     let needed = if evaluator == Evaluator::Direct { share::DROPPED } else { NEEDED };
@@ -133,11 +143,12 @@ fn with_rounding(
     }
     let plan = Plan {
         tolerance: request.tolerance,
+        precision,
         scale: weighed.scale,
         peaks: weighed.peaks.clone(),
         dropped: weighed.dropped,
         predicted,
-        costs: vec![cost::estimate(&layers, problem.frame(), &request.cost_model)],
+        costs: vec![cost::estimate(&layers, precision, problem.frame(), &request.cost_model)],
         ..Plan::by_hand(problem.clone(), layers)
     };
     // `direct` takes eight ghosts a round where there are many, and a few rounds more to gather them.

@@ -1,6 +1,6 @@
 //! What an evaluator costs: a handful of constants, one for each kind of work.
 
-use super::{Evaluator, Layer, Series, gather};
+use super::{Evaluator, Layer, Precision, Series, gather};
 use crate::frame::Frame;
 
 /// Nanoseconds that each kind of work takes on one machine; every one of them finite and above 0.
@@ -92,15 +92,16 @@ pub struct Cost {
 }
 
 /// The cost of layers, by the name of their series where there is one.
-pub(super) fn estimate(layers: &[Layer], frame: Frame, model: &CostModel) -> Cost {
+pub(super) fn estimate(layers: &[Layer], precision: Precision, frame: Frame, model: &CostModel) -> Cost {
     let summed = |layer: &Layer| match layer {
         Layer::Direct(groups) => groups.iter().map(|group| group.ghosts).sum(),
         Layer::Series(_) => 0,
     };
+    let sum = |layer: &Layer| direct(summed(layer), frame, model) * precision.slower();
     let one = |layer: &Layer| match layer {
-        Layer::Direct(_) if layers.len() == 1 => direct(summed(layer), frame, model) + model.pass,
+        Layer::Direct(_) if layers.len() == 1 => sum(layer) + model.pass,
         // Beside a series it is no pass of its own.
-        Layer::Direct(_) => direct(summed(layer), frame, model),
+        Layer::Direct(_) => sum(layer),
         Layer::Series(series) => {
             let spectrum: f64 = series.groups.iter().map(|group| gather::cost(group, &group.transform, model)).sum();
             spectrum + field(series.evaluator, &Size::of(series), frame, model)

@@ -6,7 +6,7 @@ use glam::DVec2;
 use serde::{Serialize, Serializer};
 
 use super::layer::Told;
-use super::{Cost, Evaluator, Group, Lattice, Layer, Modes, Prediction, Refusal, Series};
+use super::{Cost, Evaluator, Group, Lattice, Layer, Modes, Precision, Prediction, Refusal, Series};
 use crate::problem::Problem;
 
 /// What was decided for a problem: the layers whose sum is the field, with the error and the cost that are expected.
@@ -16,6 +16,8 @@ pub struct Plan {
     pub(super) layers: Vec<Layer>,
     /// The tolerance that it was made for.
     pub tolerance: f64,
+    /// The floats in which the summed ghosts are computed, where there are any.
+    pub precision: Precision,
     /// The field's largest value or, where it is not known exactly, a lower bound of it, RGB; the field is computed in
     /// units of it.
     pub scale: [f64; 3],
@@ -40,6 +42,7 @@ impl Plan {
             problem,
             layers,
             tolerance: f64::INFINITY,
+            precision: Precision::default(),
             scale: [1.0; 3],
             peaks: Vec::new(),
             dropped: 0,
@@ -157,6 +160,7 @@ impl Serialize for Plan {
         struct Keys<'a> {
             tolerance: f64,
             evaluator: Evaluator,
+            precision: Precision,
             period: DVec2,
             degree: [u32; 2],
             terms: usize,
@@ -169,10 +173,12 @@ impl Serialize for Plan {
             refused: &'a [Refusal],
             layers: Vec<Told>,
         }
-        let Self { problem: _, layers, tolerance, scale, peaks: _, dropped, predicted, costs, refused } = self;
+        let Self { problem: _, layers, tolerance, precision, scale, peaks: _, dropped, predicted, costs, refused } =
+            self;
         let keys = Keys {
             tolerance: *tolerance,
             evaluator: self.evaluator(),
+            precision: *precision,
             period: self.period(),
             degree: self.degree(),
             terms: self.terms(),

@@ -9,6 +9,7 @@ mod check;
 mod cost;
 mod decay;
 mod decided;
+mod direct;
 mod effort;
 mod floor;
 mod gather;
@@ -38,6 +39,7 @@ use crate::{Error, Result};
 pub use crate::choices::Evaluator;
 pub use cost::{Cost, CostModel, GRID_PASSES};
 pub use decided::Plan;
+pub use direct::Precision;
 pub use gather::Transform;
 pub use lattice::{Lattice, MOST_NODES};
 pub use layer::{Layer, Series};
@@ -102,8 +104,11 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
     request.period.map_or(Ok(()), check::period)?;
     let survey = Survey::new(problem, request);
     check::scale(survey.weighed.scale)?;
-    // A period or a degree asks for a series.
-    let series = asked.period.is_some() || asked.degree.is_some();
+    // A period or a degree asks for a series, but for the one period that periodic bells have: it is theirs by `direct` too.
+    let periodic = ghosts.par_iter().any(|ghost| ghost.bell.shape().period().is_some());
+    let series = asked.degree.is_some() || (asked.period.is_some() && !periodic);
+    // Who asks for an evaluator in a period gets it as it comes.
+    let given = series || (asked.period.is_some() && asked.evaluator.is_some());
     let wanted = |evaluator: &Evaluator| match request.evaluator {
         Some(only) => only == *evaluator,
         None => !(series && *evaluator == Evaluator::Direct),
@@ -122,7 +127,7 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
         let plan = candidate(problem, &survey, wide.as_ref(), request, evaluator).and_then(|plan| {
             // In the period that periodic bells bring with them the copies of others may land on the picture.
             let total = plan.predicted.total();
-            if series || total <= request.tolerance {
+            if given || total <= request.tolerance {
                 return Ok(plan);
             }
             Err(Error::Plan(format!("{evaluator} would be off by {total:.1e} in the period of the bells")))

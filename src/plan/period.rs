@@ -121,6 +121,10 @@ pub(super) fn error(reaches: &[Reach], period: DVec2) -> f64 {
     };
     let one = |reach: &Reach| {
         let shape = reach.bell.shape();
+        // The copies of a bell that is periodic itself are the bell.
+        if shape.period() == Some(period) {
+            return 0.0;
+        }
         let x = wrap(shape, period.x, reach.farthest.x, reach.size.x);
         let y = wrap(shape, period.y, reach.farthest.y, reach.size.y);
         reach.weight * (x * reach.nearest.y + y * reach.nearest.x + x * y)

@@ -8,8 +8,8 @@ use super::decay::Decay;
 use super::lattice::{self, Marginals};
 use super::rounding::Strength;
 use super::{
-    Evaluator, Group, Lattice, Layer, Modes, Prediction, Request, Series, check, cost, gather, period, rounding, share,
-    terms,
+    Evaluator, Group, Lattice, Layer, Modes, Precision, Prediction, Request, Series, check, cost, gather, period,
+    rounding, share, terms,
 };
 use crate::frame::Frame;
 use crate::problem::Problem;
@@ -36,7 +36,7 @@ impl Wide {
             return None;
         }
         survey.prepare().ok()?;
-        let rounding = rounding::bound(problem, &survey.weighed, Evaluator::Grid, rounding::SEEN_DEGREE);
+        let rounding = rounding::bound(&survey.weighed, Evaluator::Grid, rounding::SEEN_DEGREE);
         let usable = (request.tolerance - rounding).max(0.25 * request.tolerance);
         let period = request.period.unwrap_or_else(|| period::shortest(&survey.reaches, usable * share::PERIODISATION));
         let mut groups = survey.groups.clone();
@@ -138,7 +138,7 @@ pub(super) fn plan_series(
     }
     let [first, second] = share::GRID.map(|(truncation, interpolation)| brief.with_lattice(truncation, interpolation));
     let cost = |(series, _): &(Series, Prediction)| {
-        cost::estimate(&[Layer::Series(series.clone())], frame, &request.cost_model).milliseconds
+        cost::estimate(&[Layer::Series(series.clone())], Precision::default(), frame, &request.cost_model).milliseconds
     };
     match (first, second) {
         (Ok(first), Ok(second)) => Ok(if cost(&second) < cost(&first) { second } else { first }),
@@ -159,6 +159,11 @@ fn excess(predicted: &Prediction, usable: f64) -> f64 {
 }
 
 impl Brief<'_> {
+    /// Whether nothing of the series is left to plan, and its error comes as it comes.
+    fn given(&self) -> bool {
+        self.request.period.is_some() && self.request.degree.is_some()
+    }
+
     /// The series with terms and a lattice, each within its part of what may be used up.
     fn with_lattice(&self, truncation: f64, interpolation: f64) -> Result<(Series, Prediction)> {
         let mut terms = self.terms(truncation)?;
@@ -170,7 +175,8 @@ impl Brief<'_> {
                 .spend(terms.groups.iter().map(|group| Decay::new(group, self.period).held_work(group)).sum())?;
         }
         let marginals = marginals.unwrap_or_else(|| Marginals::by_weights(&terms.groups, degree, self.period));
-        let budget = self.usable * interpolation;
+        // Where the series is given there may be nothing left: then a lattice is to cost about what rounding does.
+        let budget = interpolation * self.usable.max(if self.given() { self.predicted.single() } else { 0.0 });
         let over = self.request.oversampling;
         let lattice = lattice::coarsest(degree, self.period, &marginals, self.frame, over, budget)?;
         self.finish(terms, Some(lattice))
@@ -210,7 +216,7 @@ impl Brief<'_> {
             // What was planned with may have been a bound by weights.
             let degree = [counts.len() as u32 - 1, counts[0] - 1];
             let known = rounding::of_modes(self.evaluator, &strength, degree) + rounding::of_doubles(&groups, degree);
-            predicted = predicted.with_single((known + self.survey.summed_rounding).min(predicted.single()));
+            predicted = predicted.with_single((known + self.survey.summed_in.1).min(predicted.single()));
         }
         let Request { tolerance, ref cost_model, .. } = *self.request;
         predicted.gathering = gather::choose(&mut groups, self.period, tolerance, &predicted, cost_model);

@@ -5,12 +5,15 @@ use glam::DVec2;
 use super::candidate::Survey;
 use super::decay::Decay;
 use super::weigh::Weighed;
-use super::{CostModel, Evaluator, Group, Request, Transform, cost, gather, period, rounding, share};
+use super::{CostModel, Evaluator, Group, Request, Transform, cost, direct, gather, period, share};
 use crate::frame::Frame;
 use crate::problem::Problem;
 
 /// Ghosts that may be summed beside a series, at most.
 const FEW: usize = 512;
+
+/// What of the tolerance their rounding may take before they are summed in 64-bit floats.
+const SUMMED: f64 = 0.1;
 
 /// The others should cost less than this part of all of them, by the estimate, to be planned for.
 const WORTH_IT: f64 = 0.9;
@@ -37,10 +40,11 @@ pub(super) fn apart(problem: &Problem, survey: &Survey, request: &Request) -> Op
         });
     }
     let weighed = only(&survey.weighed, &left);
-    let rounding = rounding::bound(problem, &only(&survey.weighed, &moved), Evaluator::Direct, 0);
+    let bounds = direct::bounds(problem, &only(&survey.weighed, &moved));
     let reaches = period::reaches(problem, &weighed);
     let (effort, prepared) = (survey.effort.clone(), survey.prepared.clone());
-    Some(Survey { weighed, groups: left, reaches, summed: moved, summed_rounding: rounding, effort, prepared })
+    let summed_in = bounds.within(SUMMED * request.tolerance);
+    Some(Survey { weighed, groups: left, reaches, summed: moved, summed_in, effort, prepared })
 }
 
 /// The weights of these groups' ghosts alone.

@@ -6,8 +6,8 @@ use super::settings::Settings;
 use crate::choices::Normalize;
 use crate::gpu::composite::{Composite, Variant};
 use crate::gpu::field::Source;
-use crate::gpu::layout::{DirectGhost, SpectralGhost};
-use crate::plan::{self, Evaluator, Group, Modes, Plan, Series, Transform};
+use crate::gpu::layout::{DirectGhost, DoubleGhost, SpectralGhost};
+use crate::plan::{self, Evaluator, Group, Modes, Plan, Precision, Series, Transform};
 use crate::scene::Ghost;
 use crate::series::moments::{Cells, Point, Sums};
 use crate::series::{Bell, phase};
@@ -15,20 +15,19 @@ use crate::series::{Bell, phase};
 /// The GLSL function that a plan's evaluator has readied, `direct` beside it where some ghosts are summed; there may be too
 /// many of them for a uniform block.
 pub(super) fn source(plan: &Plan, many_ghosts: bool) -> Source {
+    let double = plan.precision == Precision::Double;
+    let direct = if double { "\"evaluators/direct_double.glsl\"" } else { "\"evaluators/direct.glsl\"" };
+    let summed = |evaluator| Source { bell: Some(bell_file(plan)), many_ghosts, double, ..Source::of(evaluator) };
     let series = match plan.evaluator() {
-        Evaluator::Direct => {
-            let evaluator = "\"evaluators/direct.glsl\"";
-            return Source { evaluator, series: None, bell: Some(bell_file(plan)), many_ghosts };
-        }
+        Evaluator::Direct => return summed(direct),
         Evaluator::Series => "\"evaluators/series.glsl\"",
         Evaluator::Rows => "\"evaluators/rows.glsl\"",
         Evaluator::Grid => "\"evaluators/grid.glsl\"",
     };
     if plan.summed() == 0 {
-        return Source { evaluator: series, series: None, bell: None, many_ghosts: false };
+        return Source::of(series);
     }
-    let evaluator = "\"evaluators/split.glsl\"";
-    Source { evaluator, series: Some(series), bell: Some(bell_file(plan)), many_ghosts }
+    Source { parts: Some([series, direct]), ..summed("\"evaluators/split.glsl\"") }
 }
 
 /// The one bell that the summed ghosts have, or all of them.
@@ -86,7 +85,7 @@ pub(super) fn gathered(plan: &Plan, period: DVec2, group: &Group, cells: &Cells)
 }
 
 /// The ghosts that the plan sums directly, as the shader takes them, and the parameters of their bells.
-pub(super) fn direct_ghosts(plan: &Plan) -> (Vec<DirectGhost>, Vec<[f32; 4]>) {
+pub(super) fn direct_ghosts<G>(plan: &Plan, convert: impl Fn(&Ghost, [f64; 3], u32) -> G) -> (Vec<G>, Vec<[f64; 4]>) {
     let several = one_kind(plan).is_none();
     let mut shapes = Vec::new();
     // Where the parameters of the bells begin; there are only ever a few that have any.
@@ -105,17 +104,27 @@ pub(super) fn direct_ghosts(plan: &Plan) -> (Vec<DirectGhost>, Vec<[f32; 4]>) {
         let bell = begin | if several { group.bell.kind() << 24 } else { 0 };
         direct.extend(group.members.iter().map(|&index| {
             let ghost = &plan.problem().ghosts()[index as usize];
-            // Finite, so that no bell is asked for 0 · ∞ at its centre.
-            let inverse = (1.0 / ghost.size).min(DVec2::splat(f64::from(f32::MAX)));
-            DirectGhost {
-                center: [ghost.center.x as f32, ghost.center.y as f32],
-                inverse_size: [inverse.x as f32, inverse.y as f32],
-                weight: weight(ghost, plan).map(|weight| weight as f32),
-                bell,
-            }
+            convert(ghost, weight(ghost, plan), bell)
         }));
     }
     (direct, shapes)
+}
+
+/// A ghost in 32-bit floats.
+pub(super) fn single_ghost(ghost: &Ghost, weight: [f64; 3], bell: u32) -> DirectGhost {
+    // Finite, so that no bell is asked for 0 · ∞ at its centre.
+    let inverse = (1.0 / ghost.size).min(DVec2::splat(f64::from(f32::MAX)));
+    DirectGhost {
+        center: [ghost.center.x as f32, ghost.center.y as f32],
+        inverse_size: [inverse.x as f32, inverse.y as f32],
+        weight: weight.map(|weight| weight as f32),
+        bell,
+    }
+}
+
+/// A ghost as it is.
+pub(super) fn double_ghost(ghost: &Ghost, weight: [f64; 3], bell: u32) -> DoubleGhost {
+    DoubleGhost { center: ghost.center.to_array(), size: ghost.size.to_array(), weight, bell, pad: 0 }
 }
 
 /// The coefficients that the ghosts of a group share, as the spectrum takes them; none where each has its own.

@@ -103,8 +103,19 @@ pub trait Shape: Sync {
     /// A bound of what the copies of [`Shape::along`], `period` apart, add within `distance` < `period` of the centre.
     fn wrap(&self, period: f64, distance: f64, size: f64) -> f64;
 
-    /// How steep the bell is at most at an offset of at least `distance` sizes along an axis, for each size.
+    /// How steep the bell is at most at an offset of at least `distance` sizes along an axis, for each size; infinite where
+    /// it jumps.
     fn steepest(&self, distance: f64) -> f64;
+
+    /// The offset, in sizes, from which on along either axis the bell is nothing.
+    fn ends(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// Offsets in sizes, along an axis or the radius, at which the bell is steep or has a kink: where to look for errors.
+    fn edges(&self) -> Vec<f64> {
+        vec![1.0, 2.5]
+    }
 
     /// ∫∫ over the plane; over one period, for a periodic bell.
     fn integral(&self, size: DVec2) -> f64;
@@ -126,7 +137,7 @@ pub trait Shape: Sync {
     }
 
     /// What `bell_value` needs to know beside offset and size.
-    fn parameters(&self) -> Vec<[f32; 4]> {
+    fn parameters(&self) -> Vec<[f64; 4]> {
         Vec::new()
     }
 }
