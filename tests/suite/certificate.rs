@@ -21,20 +21,20 @@ fn every_pixel_is_looked_at_and_the_worst_is_named() {
     let pixels = scenes::every_pixel(frame);
     let exact = direct_at(&ghosts, &scenes::positions(frame, &pixels));
     on_backend(Backend::OsMesa, |renderer| {
-        renderer.set_scene(&coarse).unwrap();
-        let worst = compare(&exact, &renderer.probe(frame, &pixels).unwrap());
+        renderer.field.set_scene(&coarse).unwrap();
+        let worst = compare(&exact, &renderer.field.probe(frame, &pixels).unwrap());
         for tile in [1 << 20, 1000, 50] {
-            renderer.set_tile_pixels(tile);
+            renderer.field.set_tile_pixels(tile);
             let mut done = 0;
-            let found = Certificate::measure_all(renderer, &coarse, |pixels| done += pixels).unwrap();
+            let found = Certificate::measure_all(&mut renderer.field, &coarse, |pixels| done += pixels).unwrap();
             assert_eq!((found.pixels, done, found.verify), (61 * 37, 61 * 37, Verify::Full));
             assert!((found.measured / worst.relative - 1.0).abs() < 1e-9, "{} {}", found.measured, worst.relative);
             assert_eq!(found.worst_pixel, pixels[worst.worst.0], "in tiles of {tile}");
             assert!(found.check().is_err());
         }
-        let sound = Certificate::measure_all(renderer, &chosen, |_| ()).unwrap();
+        let sound = Certificate::measure_all(&mut renderer.field, &chosen, |_| ()).unwrap();
         assert!(sound.check().is_ok() && sound.measured <= sound.predicted, "{sound:?}");
-        let sample = Certificate::measure(renderer, &chosen).unwrap();
+        let sample = Certificate::measure(&mut renderer.field, &chosen).unwrap();
         // A sample may miss the field's largest value, the unit of the error, by a little.
         assert!(sample.measured <= 1.02 * sound.measured && sample.verify == Verify::Sample, "{sample:?} {sound:?}");
     });
@@ -60,8 +60,8 @@ fn a_sample_is_low_by_no_more_than_two_in_nearly_all_scenes() {
     }
     let low = on_backend(Backend::OsMesa, |renderer| {
         let low = |plan: &&Plan| {
-            let whole = Certificate::measure_all(renderer, plan, |_| ()).unwrap().measured;
-            Certificate::measure(renderer, plan).unwrap().measured < 0.5 * whole
+            let whole = Certificate::measure_all(&mut renderer.field, plan, |_| ()).unwrap().measured;
+            Certificate::measure(&mut renderer.field, plan).unwrap().measured < 0.5 * whole
         };
         plans.iter().filter(low).count()
     });

@@ -13,7 +13,7 @@ use vglare::series::moments::{Cells, Point, Sums, order_within};
 
 use crate::support::check::{Worst, within};
 use crate::support::scenes::{self, Chance};
-use crate::support::{bits, glare, on_backend, on_each_backend, plan};
+use crate::support::{bits, glare, on_backend, on_one_backend, plan};
 
 /// What f64 may leave of weights that add up to 1.
 const ROUNDING: f64 = 1e-14;
@@ -199,10 +199,10 @@ fn a_gathered_field_is_the_dispatched_one_and_both_are_as_exact_as_predicted() {
                 continue;
             }
             let plans = [true, false].map(|gather| planned(&ghosts, evaluator, gather));
-            on_each_backend(|backend, renderer| {
+            on_one_backend(|backend, renderer| {
                 for plan in &plans {
-                    renderer.set_scene(plan).unwrap();
-                    let actual = renderer.probe(FRAME, &pixels).unwrap();
+                    renderer.field.set_scene(plan).unwrap();
+                    let actual = renderer.field.probe(FRAME, &pixels).unwrap();
                     let name = format!("{backend}, {bell}, {evaluator}, {:?}", plan.groups().next().unwrap().transform);
                     within(plan.predicted.total(), &name, &pixels, &exact, &actual);
                 }

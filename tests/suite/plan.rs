@@ -11,7 +11,7 @@ use vglare::scene::Ghost;
 
 use crate::support::check::{Worst, within};
 use crate::support::scenes::{self, Chance};
-use crate::support::{on_each_backend, plan, plan_with};
+use crate::support::{on_one_backend, plan, plan_with};
 
 const SCENES: u64 = 200;
 
@@ -203,12 +203,13 @@ fn flanks_of_ghosts_off_the_picture_are_for_the_direct_sum() {
         let ghosts = [scenes::one([FRAME.x(63.0) + 0.4 * distance, 0.2], 0.4, [1.0, 2.0, 3.0])];
         let chosen = plan(&ghosts, FRAME, &Request::new(1e-3)).unwrap();
         let exact = direct_at(&ghosts, &points);
-        let errors = on_each_backend(|backend, renderer| {
-            renderer.set_scene(&chosen).unwrap();
+        let error = on_one_backend(|backend, renderer| {
+            renderer.field.set_scene(&chosen).unwrap();
             let name = format!("{backend}, {distance} sizes away");
-            within(chosen.predicted.total(), &name, &pixels, &exact, &renderer.probe(FRAME, &pixels).unwrap()).relative
+            within(chosen.predicted.total(), &name, &pixels, &exact, &renderer.field.probe(FRAME, &pixels).unwrap())
+                .relative
         });
-        println!("{distance} sizes away, {}: {errors:?} of {:e}", chosen.evaluator(), chosen.predicted.total());
+        println!("{distance} sizes away, {}: {error:.1e} of {:e}", chosen.evaluator(), chosen.predicted.total());
     }
 }
 
@@ -235,15 +236,15 @@ fn odd_scenes() -> Vec<(&'static str, Vec<Ghost>)> {
 fn odd_scenes_are_planned_and_rendered() {
     let pixels = scenes::every_pixel(FRAME);
     let points = scenes::positions(FRAME, &pixels);
-    on_each_backend(|backend, renderer| {
+    on_one_backend(|backend, renderer| {
         for (name, ghosts) in odd_scenes() {
             let exact = direct_at(&ghosts, &points);
             for evaluator in Evaluator::ALL {
                 let name = format!("{backend}, {name}, {evaluator}");
                 let plan = plan_with(&ghosts, FRAME, 1e-3, evaluator);
                 assert!(plan.predicted.total() <= 1e-3, "{name}: {:?}", plan.predicted);
-                renderer.set_scene(&plan).unwrap();
-                let actual = renderer.probe(FRAME, &pixels).unwrap();
+                renderer.field.set_scene(&plan).unwrap();
+                let actual = renderer.field.probe(FRAME, &pixels).unwrap();
                 within(plan.predicted.total(), &name, &pixels, &exact, &actual);
             }
         }
@@ -263,9 +264,9 @@ fn a_tiny_ghost_is_for_the_direct_sum_only() {
     assert_eq!(chosen.evaluator(), Evaluator::Direct);
     let pixels = scenes::every_pixel(frame);
     let exact = direct_at(&ghosts, &scenes::positions(frame, &pixels));
-    on_each_backend(|backend, renderer| {
-        renderer.set_scene(&chosen).unwrap();
-        let actual = renderer.probe(frame, &pixels).unwrap();
+    on_one_backend(|backend, renderer| {
+        renderer.field.set_scene(&chosen).unwrap();
+        let actual = renderer.field.probe(frame, &pixels).unwrap();
         within(chosen.predicted.total(), &backend.to_string(), &pixels, &exact, &actual);
     });
     // Off every pixel's centre nothing sees it.

@@ -9,7 +9,7 @@ use vglare::reference::direct_at;
 use vglare::scene::Ghost;
 
 use crate::support::check::Worst;
-use crate::support::{on_each_backend, plan, scenes};
+use crate::support::{on_one_backend, plan, scenes};
 
 /// The plan's constants are about twice the worst that was seen; what a change of driver adds may use up some of that.
 const SHARE: f64 = 0.6;
@@ -57,16 +57,16 @@ fn rounding_stays_below_its_bound() {
             }
         }
     }
-    let measured = on_each_backend(|_, renderer| -> Vec<f64> {
+    let measured = on_one_backend(|_, renderer| -> Vec<f64> {
         let measure = |case: &Case| {
-            renderer.set_scene(&case.plan).unwrap();
-            compare(&case.exact, &renderer.probe(frame, &case.pixels).unwrap()).relative
+            renderer.field.set_scene(&case.plan).unwrap();
+            compare(&case.exact, &renderer.field.probe(frame, &case.pixels).unwrap()).relative
         };
         cases.iter().map(measure).collect()
     });
     for evaluator in Evaluator::ALL {
         let (mut per_weight, mut share) = (Worst::default(), Worst::default());
-        for (error, Case { name, plan, .. }) in measured.iter().flat_map(|errors| errors.iter().zip(&cases)) {
+        for (error, Case { name, plan, .. }) in measured.iter().zip(&cases) {
             if plan.evaluator() == evaluator {
                 let weight: f64 = plan.groups().map(|group| group.weight).sum();
                 per_weight.take(error / weight, || name.clone());

@@ -10,7 +10,7 @@ use vglare::scene::Ghost;
 use vglare::series::Bell;
 
 use crate::support::check::within;
-use crate::support::{bits, glare, on_backend, on_each_backend, plan, scenes};
+use crate::support::{bits, glare, on_backend, on_one_backend, plan, scenes};
 
 const FRAME: Frame = Frame::full(160, 90);
 
@@ -54,9 +54,9 @@ fn a_series_and_a_sum_beside_it_are_as_exact_as_predicted() {
                 assert_eq!(plan.evaluator(), evaluator, "{bell}: {:?}", plan.costs);
                 assert!((3..200).contains(&plan.summed()), "{bell}: {:?}", plan.costs);
                 assert!(plan.predicted.total() <= tolerance, "{:?}", plan.predicted);
-                on_each_backend(|backend, renderer| {
-                    renderer.set_scene(&plan).unwrap();
-                    let actual = renderer.probe(FRAME, &pixels).unwrap();
+                on_one_backend(|backend, renderer| {
+                    renderer.field.set_scene(&plan).unwrap();
+                    let actual = renderer.field.probe(FRAME, &pixels).unwrap();
                     let name = format!("{backend}, {evaluator} beside {bell} at {tolerance:e}");
                     within(plan.predicted.total(), &name, &pixels, &exact, &actual);
                 });
@@ -126,7 +126,7 @@ fn split_fields_meet_at_tiles_bit_for_bit_and_leave_no_trace() {
             let once = bits(&glare(renderer, &mine, FRAME));
             let stretched = bits(&renderer.glare(FRAME, &settings).unwrap());
             glare(renderer, &theirs, FRAME);
-            renderer.set_tile_pixels(1000);
+            renderer.field.set_tile_pixels(1000);
             assert!(bits(&glare(renderer, &mine, FRAME)) == once, "{evaluator}");
             assert!(bits(&renderer.glare(FRAME, &settings).unwrap()) == stretched, "{evaluator}, stretched");
         });

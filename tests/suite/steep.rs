@@ -30,7 +30,7 @@ fn by_direct(ghosts: &[Ghost], frame: Frame, tolerance: f64) -> Plan {
 fn hold(plans: &[(&str, Plan)]) {
     on_backend(Backend::OsMesa, |renderer| {
         for (name, plan) in plans {
-            let found = Certificate::measure_all(renderer, plan, |_| ()).unwrap();
+            let found = Certificate::measure_all(&mut renderer.field, plan, |_| ()).unwrap();
             let (measured, predicted) = (found.measured, found.predicted);
             println!("{name}: {:?}, {measured:.1e} measured, {predicted:.1e} predicted", plan.precision);
             assert!(measured <= predicted && predicted <= plan.tolerance, "{name}: {found:?}");

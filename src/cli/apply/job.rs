@@ -3,10 +3,10 @@
 use super::Args;
 use super::outputs::{Paths, glare_options, picture_options};
 use crate::Result;
-use crate::cli::progress::Progress;
 use crate::job::{self, Computer, Stages, Wanted};
 use crate::look::Look;
 use crate::photo::{self, Photo};
+use crate::terminal::progress::Progress;
 
 /// A photo, and what a run has come to know of it.
 pub struct Job<'a> {

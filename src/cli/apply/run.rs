@@ -6,11 +6,11 @@ use super::job::Job;
 use super::outputs::{self, Paths, Work};
 use super::report::Report;
 use super::{Args, sequence, summary};
-use crate::cli::progress::Progress;
 use crate::gpu::Device;
 use crate::job::{Computer, Stages};
 use crate::look::Look;
 use crate::photo::{self, Photo};
+use crate::terminal::progress::Progress;
 use crate::{Result, limits, panics, target};
 
 /// Lays glare over photos.

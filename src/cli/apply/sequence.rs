@@ -6,9 +6,9 @@ use super::job::Job;
 use super::outputs::{Paths, Sequence};
 use super::pipeline;
 use super::tally::Tally;
-use crate::cli::progress::Progress;
 use crate::gpu::Device;
 use crate::job::Computer;
+use crate::terminal::progress::Progress;
 use crate::{Error, Result, panics};
 
 /// A photo on its way, or why it is not.

@@ -13,9 +13,9 @@ use super::job::Job;
 use super::outputs::{Paths, Sequence};
 use super::report::Report;
 use super::spool::Spool;
-use crate::cli::progress::Progress;
-use crate::cli::{stderr, stdout};
 use crate::gpu::Info;
+use crate::terminal::progress::Progress;
+use crate::terminal::{stderr, stdout};
 use crate::{Error, Result, panics, target};
 
 /// What has become of the photos so far.

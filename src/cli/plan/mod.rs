@@ -7,19 +7,19 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::accuracy::AccuracyArgs;
 use super::found;
-use super::lights::FindArgs;
-use super::reading::ReadArgs;
-use super::scene::SceneArgs;
-use super::stderr::warn;
-use super::stdout;
 use crate::frame::Frame;
 use crate::gpu::{Device, Info};
 use crate::job::{self, Planned};
 use crate::look::{Gathered, Look};
+use crate::options::AccuracyArgs;
+use crate::options::FindArgs;
+use crate::options::ReadArgs;
+use crate::options::SceneArgs;
 use crate::plan::{CostModel, Plan};
 use crate::problem::Problem;
+use crate::terminal::stderr::warn;
+use crate::terminal::stdout;
 use crate::{Result, photo};
 
 /// Show how the glare of a photo would be computed
