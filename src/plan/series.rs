@@ -6,7 +6,8 @@ use super::amplitudes::{self, Amplitudes};
 use super::candidate::Survey;
 use super::lattice::{self, Marginals};
 use super::{
-    Evaluator, Group, Lattice, Layer, Precision, Prediction, Request, Series, check, cost, gather, period, rounding, share, terms,
+    Evaluator, Group, Lattice, Layer, Precision, Prediction, Request, Series, check, cost, gather, period, rounding,
+    share, terms,
 };
 use crate::frame::Frame;
 use crate::problem::Problem;
