@@ -9,7 +9,7 @@ use crate::frame::Window;
 use crate::plan::Plan;
 use crate::problem::Problem;
 use crate::reference;
-use crate::renderer::Renderer;
+use crate::renderer::Field;
 use crate::{Error, Result};
 
 pub(crate) use sample::sample_pixels;
@@ -53,21 +53,21 @@ impl Certificate {
     ///
     /// # Errors
     /// [`Error::Gl`] where the driver refuses.
-    pub fn measure(renderer: &mut Renderer, plan: &Plan) -> Result<Self> {
-        Ok(Samples::take(renderer, plan)?.certify())
+    pub fn measure(field: &mut Field, plan: &Plan) -> Result<Self> {
+        Ok(Samples::take(field, plan)?.certify())
     }
 
     /// Renders the plan's field, and measures it at every pixel of its window; `advance` is told how many more are done.
     ///
     /// # Errors
     /// [`Error::Gl`] where the driver refuses.
-    pub fn measure_all(renderer: &mut Renderer, plan: &Plan, mut advance: impl FnMut(usize)) -> Result<Self> {
+    pub fn measure_all(field: &mut Field, plan: &Plan, mut advance: impl FnMut(usize)) -> Result<Self> {
         let (ghosts, frame) = (plan.problem().ghosts(), plan.problem().frame());
-        renderer.set_scene(plan)?;
+        field.set_scene(plan)?;
         let mut comparison = Comparison::in_units(plan.scale);
         // Where each tile's values begin among all of them.
         let mut tiles: Vec<(usize, Window)> = Vec::new();
-        renderer.field(frame, |tile, rendered| {
+        field.visit(frame, |tile, rendered| {
             tiles.push((comparison.count(), tile));
             for (batch, rendered) in rendered.chunks(BATCH).enumerate() {
                 let place = |k: usize| {
@@ -105,7 +105,7 @@ impl Certificate {
     }
 }
 
-/// A renderer's field at sample pixels, not yet held against the truth: that needs no device, and may be done elsewhere.
+/// A field's field at sample pixels, not yet held against the truth: that needs no device, and may be done elsewhere.
 pub(crate) struct Samples {
     problem: Arc<Problem>,
     pixels: Vec<[i32; 2]>,
@@ -120,11 +120,11 @@ impl Samples {
     ///
     /// # Errors
     /// [`Error::Gl`] where the driver refuses.
-    pub fn take(renderer: &mut Renderer, plan: &Plan) -> Result<Self> {
+    pub fn take(field: &mut Field, plan: &Plan) -> Result<Self> {
         let problem = plan.problem().clone();
         let pixels = sample_pixels(plan);
-        renderer.set_scene(plan)?;
-        let rendered = renderer.probe(problem.frame(), &pixels)?;
+        field.set_scene(plan)?;
+        let rendered = field.probe(problem.frame(), &pixels)?;
         Ok(Self {
             problem,
             pixels,

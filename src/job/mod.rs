@@ -24,7 +24,7 @@ use crate::gpu::{Device, Info, PassTime};
 use crate::look::{Gathered, Look};
 use crate::photo::{self, BadPixels, Photo};
 use crate::problem::Problem;
-use crate::renderer::{Pending, Renderer, Settings};
+use crate::renderer::{Pending, Picture, Settings};
 use crate::{Error, Result};
 
 pub use crate::calibration::Known;
@@ -124,11 +124,24 @@ impl Stages {
     }
 }
 
+impl Stages {
+    /// Lets one stage have some of the milliseconds of another.
+    fn shift(&mut self, from: &str, to: &str, milliseconds: f64) {
+        for (stage, wall) in &mut self.0 {
+            match stage {
+                stage if *stage == from => *wall = (*wall - milliseconds).max(0.0),
+                stage if *stage == to => *wall += milliseconds,
+                _ => {}
+            }
+        }
+    }
+}
+
 /// The device and what renders on it, made once for however many photos.
 pub struct Computer {
     device: Rc<Device>,
     info: Arc<Info>,
-    renderer: Option<Renderer>,
+    renderer: Option<Picture>,
     /// Whether what is wrong with the machine, and not with a photo, has been told.
     warned: bool,
 }
@@ -200,6 +213,7 @@ impl<'a> Job<'a> {
         if !std::mem::replace(&mut computer.warned, true) {
             self.warnings.extend(planned.warnings.iter().cloned());
         }
+        self.settings.check(planned.plan.scale)?;
         self.info = Some(computer.info.clone());
         self.warnings.extend(self.absurd(&planned.plan));
 
@@ -208,11 +222,11 @@ impl<'a> Job<'a> {
         begin(watch, "computing the glare")?;
         let renderer = match &mut computer.renderer {
             Some(renderer) => renderer,
-            none => none.insert(Renderer::new(&computer.device)?),
+            none => none.insert(Picture::new(&computer.device)?),
         };
-        renderer.set_timing(wanted.times);
+        renderer.field.set_timing(wanted.times);
         let rendered = self.draw(renderer, &planned, wanted);
-        renderer.set_timing(false);
+        renderer.field.set_timing(false);
         let pending = rendered?;
 
         self.certify(renderer, &planned, wanted.verify, watch)?;
@@ -233,15 +247,18 @@ impl<'a> Job<'a> {
     }
 
     /// Draws the picture, some of which may still be on its way back then.
-    fn draw(&mut self, renderer: &mut Renderer, planned: &Planned, wanted: Wanted) -> Result<Pending> {
+    fn draw(&mut self, renderer: &mut Picture, planned: &Planned, wanted: Wanted) -> Result<Pending> {
         let (frame, settings) = (self.photo.frame, &self.settings);
-        self.stages.time("spectrum", || renderer.set_scene(&planned.plan))?;
-        self.passes = renderer.take_times();
-        let spectrum = milliseconds(&self.passes);
+        self.stages.time("spectrum", || renderer.field.set_scene(&planned.plan))?;
+        // What the plan has computed of the spectrum is the spectrum's.
+        let computed = planned.plan.spectrum_milliseconds();
+        self.stages.shift("plan", "spectrum", computed);
+        self.passes = renderer.field.take_times();
+        let spectrum = computed + milliseconds(&self.passes);
         if wanted.glare {
             self.glare = Some(self.stages.time("glare", || renderer.glare(frame, settings))?);
         }
-        let times = renderer.take_times();
+        let times = renderer.field.take_times();
         if !wanted.picture {
             self.measured_ms = wanted.times.then(|| spectrum + milliseconds(&times));
             self.passes.extend(times);
@@ -256,27 +273,21 @@ impl<'a> Job<'a> {
             }
             renderer.submit(frame, pixels, settings)
         })?;
-        let composite = renderer.take_times();
+        let composite = renderer.field.take_times();
         self.measured_ms = wanted.times.then(|| spectrum + milliseconds(&composite));
         self.passes.extend(composite);
         Ok(pending)
     }
 
     /// Holds the field against the direct sum, and warns where it is further off than was asked.
-    fn certify(
-        &mut self,
-        renderer: &mut Renderer,
-        planned: &Planned,
-        verify: Verify,
-        watch: &impl Watch,
-    ) -> Result<()> {
+    fn certify(&mut self, renderer: &mut Picture, planned: &Planned, verify: Verify, watch: &impl Watch) -> Result<()> {
         let plan = &planned.plan;
         begin(watch, "measuring the error")?;
         let certificate = self.stages.time("certify", || match verify {
-            Verify::Sample => Certificate::measure(renderer, plan),
+            Verify::Sample => Certificate::measure(&mut renderer.field, plan),
             Verify::Full => {
                 watch.measured(self.photo.frame.window.pixels());
-                Certificate::measure_all(renderer, plan, |pixels| watch.advance(pixels))
+                Certificate::measure_all(&mut renderer.field, plan, |pixels| watch.advance(pixels))
             }
         })?;
         if let Err(error) = certificate.check() {

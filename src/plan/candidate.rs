@@ -9,6 +9,9 @@ use super::{Evaluator, Group, Layer, Plan, Precision, Prediction, Request, cost,
 use crate::problem::Problem;
 use crate::{Error, Result};
 
+/// The part of the tolerance that a series needs for its own bounds.
+const NEEDED: f64 = 0.25;
+
 /// What all evaluators' plans begin with.
 pub(super) struct Survey {
     pub weighed: Weighed,
@@ -53,7 +56,12 @@ pub(super) fn candidate(
     let mut degree = request.degree.map_or(rounding::SEEN_DEGREE, |[n, m]| n.max(m));
     loop {
         let (precision, summed) = survey.summed_in;
-        let rounding = rounding::bound(&survey.weighed, evaluator, degree) + summed;
+        let mut rounding = rounding::bound(&survey.weighed, evaluator, degree) + summed;
+        if rounding > (1.0 - NEEDED) * request.tolerance
+            && let Some(wide) = wide
+        {
+            rounding = rounding.min(wide.rounding(evaluator) + summed);
+        }
         let plan = with_rounding(problem, (precision, rounding), survey, wide, request, evaluator)?;
         let needed = plan.degree()[0].max(plan.degree()[1]);
         if needed <= degree {
@@ -74,11 +82,10 @@ fn with_rounding(
 ) -> Result<Plan> {
     let weighed = &survey.weighed;
     // With the whole of the series given, there is nothing left to plan: the error is predicted as it comes.
-    let between = evaluator != Evaluator::Grid || request.oversampling.is_some();
-    let given = request.period.is_some() && request.degree.is_some() && between;
+    let given = request.period.is_some() && request.degree.is_some();
     let usable = request.tolerance - rounding;
     // A direct sum leaves out nothing but ghosts; a series needs room for its own bounds.
-    let needed = if evaluator == Evaluator::Direct { share::DROPPED } else { 0.25 };
+    let needed = if evaluator == Evaluator::Direct { share::DROPPED } else { NEEDED };
     if usable < needed * request.tolerance && !given {
         return Err(Error::ToleranceBelowFloor { asked: request.tolerance, floor: rounding / (1.0 - needed) });
     }

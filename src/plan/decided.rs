@@ -6,7 +6,7 @@ use glam::DVec2;
 use serde::{Serialize, Serializer};
 
 use super::layer::Told;
-use super::{Cost, Evaluator, Group, Lattice, Layer, Precision, Prediction, Refusal, Series};
+use super::{Cost, Evaluator, Group, Lattice, Layer, Modes, Precision, Prediction, Refusal, Series};
 use crate::problem::Problem;
 
 /// What was decided for a problem: the layers whose sum is the field, with the error and the cost that are expected.
@@ -56,7 +56,20 @@ impl Plan {
     pub fn with_series(mut self, change: impl Fn(&mut Series)) -> Self {
         for layer in &mut self.layers {
             if let Layer::Series(series) = layer {
+                let modes = series.modes.take();
+                let (period, counts) = (series.period, series.counts.clone());
                 change(series);
+                series.modes = modes.filter(|_| series.period == period && series.counts == counts);
+            }
+        }
+        self
+    }
+
+    /// The same plan, its spectrum left to the device, ghost by ghost, even where the plan has computed it.
+    pub fn without_modes(mut self) -> Self {
+        for layer in &mut self.layers {
+            if let Layer::Series(series) = layer {
+                series.modes = None;
             }
         }
         self
@@ -105,6 +118,12 @@ impl Plan {
     /// The lattice, where the evaluator is `grid`.
     pub fn lattice(&self) -> Option<&Lattice> {
         self.series().and_then(|series| series.lattice.as_ref())
+    }
+
+    /// How long it took to compute the modes that become the spectrum, in milliseconds by the wall clock; 0 where the
+    /// spectrum is left to the device.
+    pub fn spectrum_milliseconds(&self) -> f64 {
+        self.series().and_then(|series| series.modes.as_ref()).map_or(0.0, Modes::milliseconds)
     }
 
     /// The groups of all layers.

@@ -1,6 +1,7 @@
 //! What floats cost the direct sum: unlike a series, each bell is off by no more than it is itself, or as steep, at the
 //! nearest pixel.
 
+use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
 use glam::DVec2;
@@ -81,7 +82,7 @@ const CELLS: [usize; 2] = [8, 4];
 pub(super) fn bounds(problem: &Problem, weighed: &Weighed) -> Bounds {
     let (ghosts, frame) = (problem.ghosts(), problem.frame());
     let kept = weighed.weights.iter().filter(|&&weight| weight > 0.0).count();
-    let cells = Cells::new(frame, CELLS[usize::from(kept > FEW)]);
+    let cells = Cells::new(frame, CELLS[usize::from(kept > FEW)], kept);
     let chunk = ghosts.len().div_ceil(64).max(256);
     let sums: Vec<[Vec<f64>; 2]> = (0..ghosts.len().div_ceil(chunk))
         .into_par_iter()
@@ -90,41 +91,27 @@ pub(super) fn bounds(problem: &Problem, weighed: &Weighed) -> Bounds {
     let largest = |kind: usize| {
         (0..cells.count * cells.count).map(|cell| sums.iter().map(|sums| sums[kind][cell]).sum()).fold(0.0, f64::max)
     };
-    let additions = PER_WEIGHT_DOUBLE + PER_ADDITION_DOUBLE * kept as f64;
-    Bounds {
-        single: largest(0).max(PER_WEIGHT),
-        double: STORED + additions * (1.0 + largest(1)) + turned(ghosts, weighed, frame),
-    }
-}
-
-/// What the f64 of phases shifts periodic bells by, which others do not have: their offsets are those of the reference to
-/// the last bit.
-fn turned(ghosts: &[Ghost], weighed: &Weighed, frame: Frame) -> f64 {
-    let (low, high) = frame.bounds();
-    let one = |(ghost, &weight): (&Ghost, &f64)| {
-        let shape = ghost.bell.shape();
-        let Some(period) = shape.period().filter(|_| weight > 0.0) else { return 0.0 };
-        let farthest = (ghost.center - low).abs().max((high - ghost.center).abs()) + period;
-        let shift = 4.0 * f64::EPSILON * farthest / ghost.size;
-        weight * (shape.steepest(0.0) * (shift.x + shift.y)).min(1.0)
-    };
-    ghosts.iter().zip(&weighed.weights).map(one).sum()
+    let additions = PER_ADDITION_DOUBLE * kept as f64;
+    Bounds { single: largest(0).max(PER_WEIGHT), double: STORED + additions + largest(1) }
 }
 
 /// The window in as many parts along each side.
 struct Cells {
     count: usize,
+    /// What the f64 of one bell is off by, for each unit of it, and of its exponent: the sum of so many ghosts with it.
+    per_double: f64,
     low: DVec2,
     side: DVec2,
 }
 
 impl Cells {
-    fn new(frame: Frame, count: usize) -> Self {
+    fn new(frame: Frame, count: usize, ghosts: usize) -> Self {
         let (low, high) = frame.bounds();
-        Self { count, low, side: (high - low) / count as f64 }
+        let per_double = PER_WEIGHT_DOUBLE + PER_ADDITION_DOUBLE * ghosts as f64;
+        Self { count, per_double, low, side: (high - low) / count as f64 }
     }
 
-    /// What f32 costs, and what meets, in each cell, of a range of ghosts.
+    /// What f32 costs, and f64, in each cell, of a range of ghosts.
     fn sums(&self, ghosts: &[Ghost], weighed: &Weighed, range: Range<usize>) -> [Vec<f64>; 2] {
         let mut sums = [(); 2].map(|()| vec![0.0; self.count * self.count]);
         let mut places = Vec::with_capacity(self.count);
@@ -135,9 +122,9 @@ impl Cells {
             places.extend((0..self.count).map(|k| bell.places(self, k, weighed.nearest[index].abs())));
             for (row, [_, y]) in places.iter().enumerate() {
                 for (column, [x, _]) in places.iter().enumerate() {
-                    let (off, met) = bell.off(x, y);
-                    sums[0][row * self.count + column] += weight * off;
-                    sums[1][row * self.count + column] += weight * met;
+                    let [single, double] = bell.off(x, y, self.per_double);
+                    sums[0][row * self.count + column] += weight * single;
+                    sums[1][row * self.count + column] += weight * double;
                 }
             }
         }
@@ -151,15 +138,17 @@ struct Steepness<'a> {
     shape: &'a dyn Shape,
     /// Whether it depends on the radius alone.
     radial: bool,
-    /// Half a period in sizes of a bell that has one lobe in it; infinite for a Gaussian.
-    half_period: Option<DVec2>,
+    /// Whether it is an exponential of the offset, or of a sine, as a Gaussian is, in which a rounding of the exponent counts
+    /// as often as the exponent is large.
+    exponential: bool,
     /// How far its centre is moved, in sizes.
     moved: DVec2,
-    /// What of it is at most off for each size that it is off along one axis: none where f32 has no room for one over the
-    /// size.
+    /// Whether f32 has room for one over the sizes.
     held: bool,
     /// What a sine-Gaussian is shifted by beside its offset, in sizes.
     beside: DVec2,
+    /// And in f64, the larger of both.
+    beside_double: f64,
 }
 
 /// A bell along one axis, in a cell or farther: offsets in sizes.
@@ -168,6 +157,7 @@ struct Place {
     /// The nearest offset, less what f32 shifts it by.
     near: f64,
     shift: f64,
+    shift_double: f64,
     value: f64,
     steepest: f64,
     exponent: f64,
@@ -178,21 +168,18 @@ impl<'a> Steepness<'a> {
         let shape = ghost.bell.shape();
         let moved = |center: f64| (center - f64::from(center as f32)).abs();
         let beside = match &ghost.bell {
-            Bell::SineGaussian(bell) => SINE / std::f64::consts::TAU * bell.period / ghost.size,
+            Bell::SineGaussian(bell) => SINE / TAU * bell.period / ghost.size,
             _ => DVec2::ZERO,
         };
         Self {
             ghost,
             shape,
             radial: matches!(shape.modes(), Modes::Radial(_)),
-            half_period: match &ghost.bell {
-                Bell::Gaussian => Some(DVec2::INFINITY),
-                Bell::VonMises(bell) => Some(0.5 * bell.period / ghost.size),
-                _ => None,
-            },
+            exponential: matches!(ghost.bell, Bell::Gaussian | Bell::VonMises(_) | Bell::SineGaussian(_)),
             moved: DVec2::new(moved(ghost.center.x), moved(ghost.center.y)) / ghost.size,
             held: ghost.size.max_element() < 1.0 / f64::from(f32::MIN_POSITIVE),
             beside,
+            beside_double: beside.max_element() * f64::EPSILON / f64::from(f32::EPSILON),
         }
     }
 
@@ -205,18 +192,39 @@ impl<'a> Steepness<'a> {
         let far = ((low - center).abs().max((high - center).abs()) / size).max(near);
         let position = PER_POSITION * low.abs().max(high.abs()) / size;
         let [x, y] = [0, 1].map(|axis| {
-            // Within half a period, a von Mises bell is what a Gaussian is at the chord, which is shorter.
-            let chord = self.half_period.map(|half| half[axis]).filter(|half| far[axis] <= *half);
-            let near = chord.map_or(near[axis], |half| {
-                let turn = std::f64::consts::FRAC_PI_2 / half;
-                if turn > 0.0 { (turn * near[axis]).sin() / turn } else { near[axis] }
-            });
-            // The exponent has it already, which is where an exponential is off.
-            let scaled = if chord.is_some() { 0.0 } else { self.scaled(far[axis]) };
+            // Of a periodic bell, whose offsets are many, the lobe decides.
+            let lobe = self.lobe(axis, low[axis] - center[axis], high[axis] - center[axis]);
+            // Within half a period a von Mises bell is what a Gaussian is, whose exponent has the offset's rounding already.
+            let relative = match &self.ghost.bell {
+                Bell::Gaussian => true,
+                Bell::VonMises(bell) => far[axis] * size[axis] <= 0.5 * bell.period[axis],
+                _ => false,
+            };
+            let scaled = if relative { 0.0 } else { self.scaled(far[axis]) };
             let shift = position[axis] + self.moved[axis] + self.beside[axis] + scaled;
-            self.place(near, shift, chord.is_some())
+            self.place(lobe.unwrap_or(near[axis]), shift, far[axis])
         });
         [x, y]
+    }
+
+    /// How near a periodic bell's lobe is at offsets from `low` to `high`, as the distance at which a Gaussian is as large.
+    fn lobe(&self, axis: usize, low: f64, high: f64) -> Option<f64> {
+        let size = self.ghost.size[axis];
+        let least = |distance: &dyn Fn(f64) -> f64, zeros: &[f64], period: f64| {
+            let (low, high) = (low / period, high / period);
+            let held = |zero: &f64| (low - zero).ceil() <= high - zero;
+            // Between zeros it rises and falls once.
+            if zeros.iter().any(held) { 0.0 } else { distance(low).abs().min(distance(high).abs()) * period / size }
+        };
+        match &self.ghost.bell {
+            Bell::VonMises(bell) => Some(least(&|turns| (PI * turns).sin() / PI, &[0.0], bell.period[axis])),
+            Bell::SineGaussian(bell) => {
+                let zero = bell.mean.clamp(-1.0, 1.0).asin() / TAU;
+                let distance = |turns: f64| ((TAU * turns).sin() - bell.mean) / TAU;
+                Some(least(&distance, &[zero, 0.5 - zero], bell.period[axis]))
+            }
+            _ => None,
+        }
     }
 
     /// What the offset's own rounding shifts the bell by, where that goes as far as `far`.
@@ -228,37 +236,46 @@ impl<'a> Steepness<'a> {
         }
     }
 
-    /// The bell at an offset or farther that f32 shifts by as much; `gaussian` where it is no farther up than a Gaussian.
-    fn place(&self, near: f64, shift: f64, gaussian: bool) -> Place {
-        let shape = if gaussian { Bell::Gaussian.shape() } else { self.shape };
-        let shifted = (near - shift).max(0.0);
-        // A periodic bell is near again farther on, and its value bounded by 1; exp(−E) (1 + E) is below 1 for every E.
-        let distance = if shape.period().is_some() { 0.0 } else { shifted };
+    /// The bell at an offset or farther that f32 shifts by as much; none goes beyond `far`.
+    fn place(&self, near: f64, shift: f64, far: f64) -> Place {
+        let shape = if self.exponential { Bell::Gaussian.shape() } else { self.shape };
+        let distance = (near - shift).max(0.0);
         Place {
             near: distance,
             shift,
+            // The reference takes whole periods off its own way.
+            shift_double: if self.shape.period().is_some() {
+                4.0 * f64::EPSILON * far + self.beside_double
+            } else {
+                0.0
+            },
             value: along(shape, distance),
             steepest: if self.radial { 0.0 } else { shape.steepest(distance) },
-            exponent: if gaussian { 0.5 * near * near } else { 0.0 },
+            exponent: if self.exponential { 0.5 * near * near } else { 0.0 },
         }
     }
 
-    /// What the bell of peak 1 is off by in f32, and what it is, at most.
-    fn off(&self, x: &Place, y: &Place) -> (f64, f64) {
+    /// What the bell of peak 1 is off by at most, in f32 and in f64.
+    fn off(&self, x: &Place, y: &Place, per_double: f64) -> [f64; 2] {
         let met = x.value * y.value;
         if met == 0.0 {
-            return (0.0, 0.0);
+            return [0.0; 2];
         }
         // A profile may fall from 1 to −1.
         let most = if self.radial { 2.0 } else { 1.0 } * met;
+        let slope = |x_shift: f64, y_shift: f64| x_shift * x.steepest * y.value + y_shift * y.steepest * x.value;
         let shifted = if !self.held {
             f64::INFINITY
         } else if self.radial {
             // The radius is not below what both offsets make.
             self.shape.steepest(x.near.hypot(y.near)) * x.shift.hypot(y.shift)
         } else {
-            x.shift * x.steepest * y.value + y.shift * y.steepest * x.value
+            slope(x.shift, y.shift)
         };
-        (PER_WEIGHT * met * (1.0 + x.exponent + y.exponent) + shifted.min(most), met)
+        let with_exponent = met * (1.0 + x.exponent + y.exponent);
+        [
+            PER_WEIGHT * with_exponent + shifted.min(most),
+            per_double * with_exponent + slope(x.shift_double, y.shift_double).min(most),
+        ]
     }
 }

@@ -109,7 +109,8 @@ pub(super) fn coarsest(
     if nodes.iter().any(|&nodes| nodes > MOST_NODES) {
         let [x, y] = nodes;
         return Err(Error::Plan(format!(
-            "a lattice of {x} x {y} nodes is beyond {MOST_NODES} a side; rows needs none"
+            "a lattice of {x} x {y} nodes is beyond {MOST_NODES} a side, which is what grid can index; series and rows \
+             need none"
         )));
     }
     let theta = TAU * step / period;

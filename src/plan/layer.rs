@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::{Evaluator, Group, Lattice, Transform};
+use super::{Evaluator, Group, Lattice, Modes, Transform};
 
 /// A part of the field, with the way that it is computed.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,6 +49,9 @@ pub struct Series {
     pub counts: Arc<[u32]>,
     /// The groups of ghosts, one part of the spectrum each.
     pub groups: Vec<Group>,
+    /// The modes of all groups, where the plan has computed them: they become the spectrum, and no group has to be
+    /// transformed again.
+    pub modes: Option<Modes>,
     /// The lattice, where the evaluator is `grid`.
     pub lattice: Option<Lattice>,
 }

@@ -25,6 +25,12 @@ impl Prediction {
         self.dropped + self.periodisation + self.truncation + self.interpolation + self.gathering + self.single()
     }
 
+    /// The same, but for what single precision costs in all, some of which is storage.
+    pub(super) fn with_single(self, single: f64) -> Self {
+        let storage = self.storage.min(0.5 * single);
+        Self { storage, rounding: single - storage, ..self }
+    }
+
     /// What single precision costs in all.
     pub fn single(&self) -> f64 {
         self.rounding + self.storage

@@ -1,6 +1,9 @@
 //! What f32 costs.
 
+use std::f64::consts::TAU;
+
 use super::Evaluator;
+use super::amplitudes::{Rgb, largest};
 use super::weigh::Weighed;
 
 /// The error, for each unit of weight, that phases, tables and sums in f32 make at most: about twice the worst that
@@ -13,6 +16,41 @@ fn per_weight(evaluator: Evaluator) -> f64 {
         Evaluator::Rows => 1.2e-6, // seen: 6.0e-7
         Evaluator::Grid => 1.6e-6, // seen: 8.3e-7, with some interpolation in it
     }
+}
+
+/// What f32 computes with, where the modes of the field are known: bounds of what they add at any point, for each colour.
+pub(super) struct Strength {
+    /// Of all modes together.
+    pub total: Rgb,
+    /// The root of the sum of squares over the harmonics of x, each with all that it holds; and over those of y.
+    pub across: [Rgb; 2],
+    /// Of all modes, each times the sum of its harmonics.
+    pub turning: Rgb,
+}
+
+/// The error of f32, storage included, of a series whose modes are known; relative to the field's largest value.
+///
+/// A phase is off by half of 2⁻³² of a turn, times the harmonic, which shifts every wave of a pixel alike: that is a bound.
+/// Everything else, the roundings of terms, tables and sums, has nothing to do with each other: those of the tables go
+/// with the root of the sum of squares over the harmonics, and those of the sums with what is added up, which is no more
+/// than the field and a few times what the harmonics still to come may hold by chance. Their factors are fitted:
+/// docs/accuracy.md, "Rounding".
+pub(super) fn of_modes(evaluator: Evaluator, strength: &Strength, degree: [u32; 2]) -> f64 {
+    const UNIT: f64 = 0.5 * f32::EPSILON as f64;
+    let [tables, sums] = match evaluator {
+        Evaluator::Direct => [0.0; 2],
+        Evaluator::Series => [3.0, 0.8],
+        Evaluator::Rows => [3.0, 0.8],
+        Evaluator::Grid => [6.0, 1.6],
+    };
+    let added = (2.0 + f64::from(degree[0]) + f64::from(degree[1])).sqrt();
+    let one = |colour: usize| {
+        let [x, y] = strength.across.map(|across| across[colour]);
+        let partial = strength.total[colour].min(1.0 + 2.0 * (x + y));
+        let turned = TAU * 2f64.powi(-33) * strength.turning[colour];
+        turned + UNIT * (tables * (x + y) + sums * added * partial)
+    };
+    largest([0, 1, 2].map(one))
 }
 
 /// Of that, what comes of storing alone: half a unit in the last place of each result that one pass leaves to the next. For

@@ -5,9 +5,10 @@ use glam::DVec2;
 use super::amplitudes::{self, Amplitudes};
 use super::candidate::Survey;
 use super::lattice::{self, Marginals};
+use super::rounding::Strength;
 use super::{
-    Evaluator, Group, Lattice, Layer, Precision, Prediction, Request, Series, check, cost, gather, period, rounding,
-    share, terms,
+    Evaluator, Group, Lattice, Layer, Modes, Precision, Prediction, Request, Series, check, cost, gather, period,
+    rounding, share, terms,
 };
 use crate::frame::Frame;
 use crate::problem::Problem;
@@ -43,6 +44,12 @@ impl Wide {
         Some(Self { period, periodisation: period::error(&survey.reaches, period), groups, amplitudes, beyond })
     }
 
+    /// What f32 costs with all of the modes.
+    pub fn rounding(&self, evaluator: Evaluator) -> f64 {
+        let counts = self.amplitudes.modes().counts();
+        rounding::of_modes(evaluator, &self.amplitudes.strength(counts), [counts.len() as u32 - 1, counts[0] - 1])
+    }
+
     /// Whether it leaves enough of what may be used up.
     fn fits(&self, request: &Request, usable: f64) -> bool {
         let period = request.period.is_some() || self.periodisation <= 1.5 * share::PERIODISATION * usable;
@@ -58,7 +65,8 @@ impl Wide {
             group.degree = [n.min(counts.len() as u32 - 1), m.min(counts[0] - 1)];
         }
         let marginals = Marginals::of(self.amplitudes.marginals(&counts));
-        Terms { groups, marginals: Some(marginals), truncation: self.beyond + left, counts }
+        let (modes, strength) = (Some(self.amplitudes.modes().clone()), Some(self.amplitudes.strength(&counts)));
+        Terms { groups, modes, strength, marginals: Some(marginals), truncation: self.beyond + left, counts }
     }
 }
 
@@ -66,6 +74,9 @@ impl Wide {
 struct Terms {
     groups: Vec<Group>,
     counts: Vec<u32>,
+    /// The modes themselves, where they were computed.
+    modes: Option<Modes>,
+    strength: Option<Strength>,
     /// What each harmonic holds, where it was looked at.
     marginals: Option<Marginals>,
     /// What is left out.
@@ -137,13 +148,19 @@ fn excess(predicted: &Prediction, usable: f64) -> f64 {
 }
 
 impl Brief<'_> {
+    /// Whether nothing of the series is left to plan, and its error comes as it comes.
+    fn given(&self) -> bool {
+        self.request.period.is_some() && self.request.degree.is_some()
+    }
+
     /// The series with terms and a lattice, each within its part of what may be used up.
     fn with_lattice(&self, truncation: f64, interpolation: f64) -> Result<(Series, Prediction)> {
         let mut terms = self.terms(truncation)?;
         let degree = [terms.counts.len() as u32 - 1, terms.counts[0] - 1];
         let marginals = terms.marginals.take();
         let marginals = marginals.unwrap_or_else(|| Marginals::by_weights(&terms.groups, degree, self.period));
-        let budget = self.usable * interpolation;
+        // Where the series is given there may be nothing left: then a lattice is to cost about what rounding does.
+        let budget = interpolation * self.usable.max(if self.given() { self.predicted.single() } else { 0.0 });
         let over = self.request.oversampling;
         let lattice = lattice::coarsest(degree, self.period, &marginals, self.frame, over, budget)?;
         self.finish(terms, Some(lattice))
@@ -160,7 +177,7 @@ impl Brief<'_> {
                     Some(degree) => terms::rectangle(&mut groups, degree),
                     None => terms::fewest(&mut groups, self.period, truncation)?,
                 };
-                Terms { groups, counts, marginals: None, truncation: f64::NAN }
+                Terms { groups, counts, modes: None, strength: None, marginals: None, truncation: f64::NAN }
             }
         };
         let count: usize = terms.counts.iter().map(|&count| count as usize).sum();
@@ -176,12 +193,18 @@ impl Brief<'_> {
 
     /// The series, with all that it adds to the error.
     fn finish(&self, terms: Terms, lattice: Option<Lattice>) -> Result<(Series, Prediction)> {
-        let Terms { mut groups, counts, marginals: _, truncation } = terms;
+        let Terms { mut groups, counts, modes, strength, marginals: _, truncation } = terms;
         let interpolation = lattice.map_or(0.0, |lattice| lattice.error);
         let mut predicted = Prediction { truncation, interpolation, ..self.predicted };
+        if let Some(strength) = strength {
+            // What was planned with may have been a bound by weights.
+            let degree = [counts.len() as u32 - 1, counts[0] - 1];
+            let known = rounding::of_modes(self.evaluator, &strength, degree) + self.survey.summed_in.1;
+            predicted = predicted.with_single(known.min(predicted.single()));
+        }
         let Request { tolerance, ref cost_model, .. } = *self.request;
         predicted.gathering = gather::choose(&mut groups, self.period, tolerance, &predicted, cost_model);
         let (evaluator, period) = (self.evaluator, self.period);
-        Ok((Series { evaluator, period, counts: counts.into(), groups, lattice }, predicted))
+        Ok((Series { evaluator, period, counts: counts.into(), groups, modes, lattice }, predicted))
     }
 }

@@ -38,6 +38,15 @@ pub(super) struct Weighed {
     pub dropped_error: f64,
 }
 
+/// A ghost's radiance in units of the scale.
+///
+/// The plan drops what is brighter than f32 holds, because too little of it reaches the picture; but a ghost may be kept
+/// for another of its colours.
+pub(crate) fn weight(ghost: &Ghost, scale: [f64; 3]) -> [f64; 3] {
+    const BRIGHTEST: f64 = 1e36;
+    [0, 1, 2].map(|colour| (ghost.radiance[colour] / scale[colour]).clamp(-BRIGHTEST, BRIGHTEST))
+}
+
 /// Weighs the ghosts against the picture.
 pub(super) fn weigh(problem: &Problem, tolerance: f64) -> Weighed {
     let (ghosts, frame) = (problem.ghosts(), problem.frame());

@@ -7,7 +7,7 @@ use crate::choices::Normalize;
 use crate::gpu::composite::{Composite, Variant};
 use crate::gpu::field::Source;
 use crate::gpu::layout::{DirectGhost, DoubleGhost, SpectralGhost};
-use crate::plan::{Evaluator, Group, Plan, Precision, Series, Transform};
+use crate::plan::{self, Evaluator, Group, Modes, Plan, Precision, Series, Transform};
 use crate::scene::Ghost;
 use crate::series::moments::{Cells, Point, Sums};
 use crate::series::{Bell, phase};
@@ -136,6 +136,12 @@ pub(super) fn table(series: &Series, group: &Group) -> Option<Vec<[f32; 4]>> {
     tabulated.then(|| table().into_iter().map(single).collect())
 }
 
+/// The modes that the series keeps of those that the plan has computed, as the spectrum has them: three vec4 a mode.
+pub(super) fn terms(series: &Series, modes: &Modes) -> Vec<[f32; 4]> {
+    let single = |value: f64| value.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
+    modes.kept(&series.counts).flatten().map(|term| term.map(single)).collect()
+}
+
 /// The composite's uniforms.
 pub(super) fn uniforms(plan: &Plan, settings: &Settings) -> Composite {
     let rgb = |v: [f64; 3], w: f64| [v[0] as f32, v[1] as f32, v[2] as f32, w as f32];
@@ -152,8 +158,5 @@ pub(super) fn uniforms(plan: &Plan, settings: &Settings) -> Composite {
 }
 
 fn weight(ghost: &Ghost, plan: &Plan) -> [f64; 3] {
-    // The plan drops what is brighter, because too little of it reaches the picture; but a ghost may be kept for another
-    // of its colours.
-    const BRIGHTEST: f64 = 1e36;
-    [0, 1, 2].map(|colour| (ghost.radiance[colour] / plan.scale[colour]).clamp(-BRIGHTEST, BRIGHTEST))
+    plan::weight(ghost, plan.scale)
 }

@@ -15,7 +15,7 @@ use crate::Result;
 use crate::certificate::{Certificate, Samples};
 use crate::frame::Frame;
 use crate::plan::Plan;
-use crate::renderer::Renderer;
+use crate::renderer::Field;
 
 pub use error_map::{DECADES, colour};
 pub use findings::{Cut, CutPoint, Degree, SPECTRUM_DECADES};
@@ -178,25 +178,25 @@ impl Study {
         &mut self,
         picture: &Picture<'_>,
         wanted: &Wanted,
-        renderer: &mut Renderer,
+        field: &mut Field,
         context: &Context,
     ) -> Result<bool> {
         let &Picture { number, plan } = picture;
         let frame = plan.problem().frame();
         if wanted.certificate && self.certificate.wants(&number) {
-            let samples = Samples::take(renderer, plan)?;
+            let samples = Samples::take(field, plan)?;
             self.certificate.begin(number, &self.wake, move || samples.certify());
         }
         if wanted.error_map
             && let Some(stride) = self.next_stride(number, frame)
         {
-            let map = error_map::Rendered::take(renderer, plan, frame, stride)?;
+            let map = error_map::Rendered::take(field, plan, frame, stride)?;
             let problem = plan.problem().clone();
             self.error_map.begin((number, stride), &self.wake, move || map.image(problem.ghosts()));
         }
         match wanted.plot {
             Plot::Section if self.section.wants(&(number, wanted.cut)) => {
-                let section = findings::Section::take(renderer, wanted.cut, frame)?;
+                let section = findings::Section::take(field, wanted.cut, frame)?;
                 let problem = plan.problem().clone();
                 let truth = move || section.beside_truth(problem.ghosts());
                 self.section.begin((number, wanted.cut), &self.wake, truth);
@@ -206,7 +206,7 @@ impl Study {
                 self.convergence.begin(number, &self.wake, move || findings::convergence(&plan));
             }
             Plot::Spectrum if self.spectrum.as_ref().is_none_or(|(known, _)| *known != number) => {
-                let images = findings::spectrum_images(&renderer.spectrum_terms(), plan.counts());
+                let images = findings::spectrum_images(&field.spectrum_terms(), plan.counts());
                 let load = |image| context.load_texture("spectrum", image, TextureOptions::NEAREST);
                 self.spectrum = Some((number, images.map(load)));
                 return Ok(true);

@@ -195,8 +195,8 @@ fn keeps_its_promise(name: &str, ghosts: &[Ghost], tolerances: &[f64]) {
     }
     let measured = on_one_backend(|backend, renderer| -> Vec<f64> {
         let one = |(evaluator, plan, pixels, exact): &(Evaluator, _, Vec<_>, Vec<_>)| {
-            renderer.set_scene(plan).unwrap();
-            let actual = renderer.probe(frame, pixels).unwrap();
+            renderer.field.set_scene(plan).unwrap();
+            let actual = renderer.field.probe(frame, pixels).unwrap();
             let case = format!("{backend}, {evaluator}, {name}, degree {:?}, {:?}", plan.degree(), plan.predicted);
             within(plan.predicted.total(), &case, pixels, exact, &actual).relative
         };

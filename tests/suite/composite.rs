@@ -2,7 +2,7 @@
 
 use vglare::frame::Frame;
 use vglare::plan::{Evaluator, Plan, Request};
-use vglare::renderer::{Normalize, Renderer, Settings};
+use vglare::renderer::{Normalize, Picture, Settings};
 use vglare::scene::Emission;
 
 use crate::support::{glare, on_each_backend, on_one_backend, plan, plan_with, scenes};
@@ -27,7 +27,7 @@ fn photo() -> Vec<[f32; 4]> {
     (0..frame().window.pixels()).map(|i| [value(), value(), value(), i as f32 / 99.0]).collect()
 }
 
-fn composite(renderer: &mut Renderer, photo: &[[f32; 4]], settings: &Settings) -> Vec<[f32; 4]> {
+fn composite(renderer: &mut Picture, photo: &[[f32; 4]], settings: &Settings) -> Vec<[f32; 4]> {
     let mut picture = photo.to_vec();
     renderer.composite(frame(), &mut picture, settings).unwrap();
     picture
@@ -39,7 +39,7 @@ fn the_picture_is_the_photo_and_the_glare() {
     on_each_backend(|_, renderer| {
         for strength in [1.0, 0.3, -2.0, 0.0] {
             let settings = Settings { strength, ..Settings::default() };
-            renderer.set_scene(&plan).unwrap();
+            renderer.field.set_scene(&plan).unwrap();
             let added = renderer.glare(frame(), &settings).unwrap();
             let picture = composite(renderer, &photo(), &settings);
             for ((photo, added), picture) in photo().iter().zip(&added).zip(&picture) {
@@ -59,7 +59,7 @@ fn the_picture_is_the_photo_and_the_glare() {
 fn a_strength_of_nothing_leaves_every_value_as_it_is() {
     let plan = scene();
     on_one_backend(|_, renderer| {
-        renderer.set_scene(&plan).unwrap();
+        renderer.field.set_scene(&plan).unwrap();
         assert_eq!(composite(renderer, &photo(), &Settings { strength: 0.0, ..Settings::default() }), photo());
     });
 }
@@ -74,7 +74,7 @@ fn alpha_keeps_every_bit() {
         pixel[3] = alpha;
     }
     on_one_backend(|backend, renderer| {
-        renderer.set_scene(&plan).unwrap();
+        renderer.field.set_scene(&plan).unwrap();
         for light_gain in [[1.0; 3], [0.5; 3]] {
             let settings = Settings { threshold: 1.0, light_gain, ..Settings::default() };
             for (before, after) in photo.iter().zip(composite(renderer, &photo, &settings)) {
@@ -94,7 +94,7 @@ fn a_bad_pixel_harms_only_itself() {
         photo[index][1] = value;
     }
     on_one_backend(|_, renderer| {
-        renderer.set_scene(&plan).unwrap();
+        renderer.field.set_scene(&plan).unwrap();
         let settings = Settings { light_gain: [0.5; 3], threshold: 1.0, ..Settings::default() };
         let expected = composite(renderer, &clean, &settings);
         let picture = composite(renderer, &photo, &settings);
@@ -148,7 +148,7 @@ fn light_is_taken_only_where_the_photo_is_bright_enough() {
     let photo = colours.map(|[r, g, b]| [r, g, b, 1.0]);
     on_one_backend(|_, renderer| {
         // No ghosts: what is left is the photo with its lights taken.
-        renderer.set_scene(&plan_with(&[], frame, 1e-2, Evaluator::Rows)).unwrap();
+        renderer.field.set_scene(&plan_with(&[], frame, 1e-2, Evaluator::Rows)).unwrap();
         let mut picture = photo;
         renderer.composite(frame, &mut picture, &settings).unwrap();
         for ((before, after), taken) in photo.iter().zip(&picture).zip(taken) {
@@ -170,7 +170,7 @@ fn light_is_taken_by_what_a_pixel_gives_of_its_colour() {
     let taken = [false, false, true, false, false, true];
     let frame = Frame::full(6, 1);
     on_one_backend(|_, renderer| {
-        renderer.set_scene(&plan_with(&[], frame, 1e-2, Evaluator::Rows)).unwrap();
+        renderer.field.set_scene(&plan_with(&[], frame, 1e-2, Evaluator::Rows)).unwrap();
         let mut picture = photo;
         renderer.composite(frame, &mut picture, &settings).unwrap();
         for ((before, after), taken) in photo.iter().zip(&picture).zip(taken) {
@@ -185,7 +185,7 @@ fn a_constant_is_taken_from_the_field_before_it_becomes_glare() {
     let plan = scene();
     let constant = [0.05, 0.01, 0.002];
     on_one_backend(|_, renderer| {
-        renderer.set_scene(&plan).unwrap();
+        renderer.field.set_scene(&plan).unwrap();
         for normalize in [Normalize::None, Normalize::Clamp, Normalize::Minmax] {
             let settings = Settings { strength: 2.0, normalize, ..Settings::default() };
             let raw = renderer.glare(frame(), &Settings { normalize: Normalize::None, ..settings }).unwrap();
@@ -217,17 +217,17 @@ fn the_constant_term_is_all_of_a_series_of_degree_zero() {
         ..Request::new(1e-2)
     };
     on_one_backend(|_, renderer| {
-        renderer.set_scene(&plan(&ghosts, frame(), &request(0)).unwrap()).unwrap();
-        let level = renderer.probe(frame(), &[[3, 4]]).unwrap()[0];
-        renderer.set_scene(&plan(&ghosts, frame(), &request(40)).unwrap()).unwrap();
-        let constant = renderer.constant_term().unwrap();
+        renderer.field.set_scene(&plan(&ghosts, frame(), &request(0)).unwrap()).unwrap();
+        let level = renderer.field.probe(frame(), &[[3, 4]]).unwrap()[0];
+        renderer.field.set_scene(&plan(&ghosts, frame(), &request(40)).unwrap()).unwrap();
+        let constant = renderer.field.constant_term().unwrap();
         for colour in 0..3 {
             assert!(
                 (constant[colour] - level[colour]).abs() <= 1e-6 * level[colour].abs(),
                 "{constant:?}, not {level:?}"
             );
         }
-        renderer.set_scene(&plan_with(&ghosts, frame(), 1e-3, Evaluator::Direct)).unwrap();
-        assert_eq!(renderer.constant_term(), None, "bells have none");
+        renderer.field.set_scene(&plan_with(&ghosts, frame(), 1e-3, Evaluator::Direct)).unwrap();
+        assert_eq!(renderer.field.constant_term(), None, "bells have none");
     });
 }

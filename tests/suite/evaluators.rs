@@ -5,7 +5,7 @@ use vglare::frame::Frame;
 use vglare::gpu::Backend;
 use vglare::plan::{Evaluator, Plan, Request};
 use vglare::reference::direct_at;
-use vglare::renderer::Renderer;
+use vglare::renderer::Picture;
 use vglare::scene::Ghost;
 
 use crate::support::check::{Worst, within};
@@ -46,9 +46,9 @@ impl Case {
     }
 
     /// The error at the probes, relative to the largest value.
-    fn measure(&self, backend: Backend, renderer: &mut Renderer) -> f64 {
-        renderer.set_scene(&self.plan).unwrap();
-        let actual = renderer.probe(self.frame, &self.pixels).unwrap();
+    fn measure(&self, backend: Backend, renderer: &mut Picture) -> f64 {
+        renderer.field.set_scene(&self.plan).unwrap();
+        let actual = renderer.field.probe(self.frame, &self.pixels).unwrap();
         let name = format!("{backend}, {}, predicted {:?}", self.name, self.plan.predicted);
         within(self.plan.predicted.total(), &name, &self.pixels, &self.exact, &actual).relative
     }
@@ -186,10 +186,10 @@ fn what_the_software_renderer_cannot_sum_is_refused() {
     let request = Request { evaluator: Some(Evaluator::Series), degree, ..Request::new(1e-2) };
     let series = plan(few, frame, &request).unwrap();
     on_each_backend(|_, renderer| {
-        let refusal = renderer.set_scene(&direct).unwrap_err().to_string();
+        let refusal = renderer.field.set_scene(&direct).unwrap_err().to_string();
         assert!(refusal.contains("500000 ghosts"), "{refusal}");
-        renderer.set_scene(&series).unwrap();
-        let refusal = renderer.probe(frame, &[[0, 0]]).unwrap_err().to_string();
+        renderer.field.set_scene(&series).unwrap();
+        let refusal = renderer.field.probe(frame, &[[0, 0]]).unwrap_err().to_string();
         assert!(refusal.contains("90000 terms"), "{refusal}");
     });
 }

@@ -12,7 +12,7 @@ use vglare::compare::compare_in;
 use vglare::frame::Frame;
 use vglare::plan::{Evaluator, Plan, Request};
 use vglare::reference::direct_at;
-use vglare::renderer::{Renderer, Settings};
+use vglare::renderer::{Picture, Settings};
 use vglare::scene::Ghost;
 
 use crate::support::{plan, scenes};
@@ -60,14 +60,14 @@ fn planned(what: &str, ghosts: &[Ghost], frame: Frame, request: &Request) -> Opt
 
 /// Renders a scene and measures it: at every pixel of small pictures, else at probes.
 #[track_caller]
-fn measured(renderer: &mut Renderer, what: &str, ghosts: &[Ghost], frame: Frame, plan: &Plan) -> f64 {
-    renderer.set_scene(plan).unwrap_or_else(|error| panic!("{what}: {error}"));
+fn measured(renderer: &mut Picture, what: &str, ghosts: &[Ghost], frame: Frame, plan: &Plan) -> f64 {
+    renderer.field.set_scene(plan).unwrap_or_else(|error| panic!("{what}: {error}"));
     let pixels = match frame.window.pixels() * ghosts.len() {
         ..=2_000_000 => scenes::every_pixel(frame),
         _ => scenes::probes(7, ghosts, plan, frame),
     };
     let exact = direct_at(ghosts, &scenes::positions(frame, &pixels));
-    let difference = compare_in(&exact, &renderer.probe(frame, &pixels).unwrap(), plan.scale);
+    let difference = compare_in(&exact, &renderer.field.probe(frame, &pixels).unwrap(), plan.scale);
     let total = plan.predicted.total();
     let (pixel, colour) = difference.worst;
     assert!(
@@ -87,7 +87,7 @@ fn measured(renderer: &mut Renderer, what: &str, ghosts: &[Ghost], frame: Frame,
 
 /// Plans, renders, measures and prints a line; `None` where an error said why not.
 #[track_caller]
-fn look(renderer: &mut Renderer, what: &str, ghosts: &[Ghost], frame: Frame, request: &Request) -> Option<Outcome> {
+fn look(renderer: &mut Picture, what: &str, ghosts: &[Ghost], frame: Frame, request: &Request) -> Option<Outcome> {
     let plan = planned(what, ghosts, frame, request)?;
     let measured = measured(renderer, what, ghosts, frame, &plan);
     let [n, m] = plan.degree();

@@ -201,8 +201,8 @@ fn a_gathered_field_is_the_dispatched_one_and_both_are_as_exact_as_predicted() {
             let plans = [true, false].map(|gather| planned(&ghosts, evaluator, gather));
             on_one_backend(|backend, renderer| {
                 for plan in &plans {
-                    renderer.set_scene(plan).unwrap();
-                    let actual = renderer.probe(FRAME, &pixels).unwrap();
+                    renderer.field.set_scene(plan).unwrap();
+                    let actual = renderer.field.probe(FRAME, &pixels).unwrap();
                     let name = format!("{backend}, {bell}, {evaluator}, {:?}", plan.groups().next().unwrap().transform);
                     within(plan.predicted.total(), &name, &pixels, &exact, &actual);
                 }

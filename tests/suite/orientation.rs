@@ -29,7 +29,7 @@ fn a_ghost_is_brightest_where_its_centre_is() {
             let pixels = glare(renderer, &plan, FRAME);
             assert_eq!(brightest(&pixels, 0), [80, 9], "{backend}, {evaluator}: red");
             assert_eq!(brightest(&pixels, 2), [13, 50], "{backend}, {evaluator}: blue");
-            assert_eq!(renderer.probe(FRAME, &[[80, 9]]).unwrap()[0][0] as f32, pixels[9 * 97 + 80][0]);
+            assert_eq!(renderer.field.probe(FRAME, &[[80, 9]]).unwrap()[0][0] as f32, pixels[9 * 97 + 80][0]);
         }
     });
 }

@@ -204,9 +204,10 @@ fn flanks_of_ghosts_off_the_picture_are_for_the_direct_sum() {
         let chosen = plan(&ghosts, FRAME, &Request::new(1e-3)).unwrap();
         let exact = direct_at(&ghosts, &points);
         let error = on_one_backend(|backend, renderer| {
-            renderer.set_scene(&chosen).unwrap();
+            renderer.field.set_scene(&chosen).unwrap();
             let name = format!("{backend}, {distance} sizes away");
-            within(chosen.predicted.total(), &name, &pixels, &exact, &renderer.probe(FRAME, &pixels).unwrap()).relative
+            within(chosen.predicted.total(), &name, &pixels, &exact, &renderer.field.probe(FRAME, &pixels).unwrap())
+                .relative
         });
         println!("{distance} sizes away, {}: {error:.1e} of {:e}", chosen.evaluator(), chosen.predicted.total());
     }
@@ -242,8 +243,8 @@ fn odd_scenes_are_planned_and_rendered() {
                 let name = format!("{backend}, {name}, {evaluator}");
                 let plan = plan_with(&ghosts, FRAME, 1e-3, evaluator);
                 assert!(plan.predicted.total() <= 1e-3, "{name}: {:?}", plan.predicted);
-                renderer.set_scene(&plan).unwrap();
-                let actual = renderer.probe(FRAME, &pixels).unwrap();
+                renderer.field.set_scene(&plan).unwrap();
+                let actual = renderer.field.probe(FRAME, &pixels).unwrap();
                 within(plan.predicted.total(), &name, &pixels, &exact, &actual);
             }
         }
@@ -264,8 +265,8 @@ fn a_tiny_ghost_is_for_the_direct_sum_only() {
     let pixels = scenes::every_pixel(frame);
     let exact = direct_at(&ghosts, &scenes::positions(frame, &pixels));
     on_one_backend(|backend, renderer| {
-        renderer.set_scene(&chosen).unwrap();
-        let actual = renderer.probe(frame, &pixels).unwrap();
+        renderer.field.set_scene(&chosen).unwrap();
+        let actual = renderer.field.probe(frame, &pixels).unwrap();
         within(chosen.predicted.total(), &backend.to_string(), &pixels, &exact, &actual);
     });
     // Off every pixel's centre nothing sees it.

@@ -2,7 +2,7 @@
 
 use vglare::frame::Frame;
 use vglare::plan::Evaluator;
-use vglare::renderer::{Normalize, Renderer, Settings};
+use vglare::renderer::{Normalize, Picture, Settings};
 
 use crate::support::{glare, on_each_backend, on_one_backend, plan_with, scenes};
 
@@ -26,14 +26,14 @@ fn ends(pixels: &[[f32; 4]]) -> [f32; 2] {
 }
 
 /// Reduction and picture multiply the very same f32 values by the very same scale: nothing may differ.
-fn the_range_is_that_of_the_pixels(renderer: &mut Renderer, frame: Frame, tile_pixels: usize) {
+fn the_range_is_that_of_the_pixels(renderer: &mut Picture, frame: Frame, tile_pixels: usize) {
     for which in 0..if frame.window.pixels() > 100_000 { 2 } else { 4 } {
         let ghosts = ghosts(frame, which);
         let plan = plan_with(&ghosts, frame, 1e-2, if which % 2 == 0 { Evaluator::Grid } else { Evaluator::Rows });
         let expected = ends(&glare(renderer, &plan, frame));
-        renderer.set_tile_pixels(tile_pixels);
-        assert_eq!(renderer.range(frame).unwrap(), expected, "{frame:?}, scene {which}, tiles of {tile_pixels}");
-        renderer.set_tile_pixels(4 << 20);
+        renderer.field.set_tile_pixels(tile_pixels);
+        assert_eq!(renderer.field.range(frame).unwrap(), expected, "{frame:?}, scene {which}, tiles of {tile_pixels}");
+        renderer.field.set_tile_pixels(4 << 20);
     }
 }
 
@@ -98,8 +98,8 @@ fn a_flat_field_stretches_to_nothing() {
     on_one_backend(|_, renderer| {
         for evaluator in Evaluator::ALL {
             let plan = plan_with(&[], frame, 1e-3, evaluator);
-            renderer.set_scene(&plan).unwrap();
-            assert_eq!(renderer.range(frame).unwrap(), [0.0, 0.0]);
+            renderer.field.set_scene(&plan).unwrap();
+            assert_eq!(renderer.field.range(frame).unwrap(), [0.0, 0.0]);
             for normalize in [Normalize::None, Normalize::Clamp, Normalize::Minmax] {
                 let pixels = renderer.glare(frame, &Settings { normalize, ..Settings::default() }).unwrap();
                 assert!(

@@ -59,8 +59,8 @@ fn rounding_stays_below_its_bound() {
     }
     let measured = on_one_backend(|_, renderer| -> Vec<f64> {
         let measure = |case: &Case| {
-            renderer.set_scene(&case.plan).unwrap();
-            compare(&case.exact, &renderer.probe(frame, &case.pixels).unwrap()).relative
+            renderer.field.set_scene(&case.plan).unwrap();
+            compare(&case.exact, &renderer.field.probe(frame, &case.pixels).unwrap()).relative
         };
         cases.iter().map(measure).collect()
     });

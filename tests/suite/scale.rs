@@ -23,8 +23,8 @@ fn every_size_of_a_picture_keeps_the_promise_at_its_own_pixels() {
                 let plan = plan_with(&ghosts(), frame, TOLERANCE, evaluator);
                 let pixels = scenes::probes(1, &ghosts(), &plan, frame);
                 let exact = direct_at(&ghosts(), &scenes::positions(frame, &pixels));
-                renderer.set_scene(&plan).unwrap();
-                let actual = renderer.probe(frame, &pixels).unwrap();
+                renderer.field.set_scene(&plan).unwrap();
+                let actual = renderer.field.probe(frame, &pixels).unwrap();
                 let name = format!("{backend}, {evaluator}, {height}p");
                 within(plan.predicted.total(), &name, &pixels, &exact, &actual);
             }
@@ -41,14 +41,14 @@ fn pixels_that_share_their_centres_agree_across_sizes() {
         for evaluator in Evaluator::ALL {
             let mut look = |frame: Frame, times: i32| {
                 let plan = plan_with(&ghosts(), frame, TOLERANCE, evaluator);
-                renderer.set_scene(&plan).unwrap();
+                renderer.field.set_scene(&plan).unwrap();
                 let place = |k: i32| times * k + times / 2;
                 let mine: Vec<_> = pixels.iter().map(|&[i, j]| [place(i), place(j)]).collect();
                 for (&[i, j], &[a, b]) in pixels.iter().zip(&mine) {
                     let shared = coarse.position(f64::from(i), f64::from(j));
                     assert!((frame.position(f64::from(a), f64::from(b)) - shared).length() < 1e-15);
                 }
-                renderer.probe(frame, &mine).unwrap()
+                renderer.field.probe(frame, &mine).unwrap()
             };
             let at_180 = look(coarse, 1);
             for (frame, times) in [(Frame::full(960, 540), 3), (Frame::full(2880, 1620), 9)] {

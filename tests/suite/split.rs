@@ -55,8 +55,8 @@ fn a_series_and_a_sum_beside_it_are_as_exact_as_predicted() {
                 assert!((3..200).contains(&plan.summed()), "{bell}: {:?}", plan.costs);
                 assert!(plan.predicted.total() <= tolerance, "{:?}", plan.predicted);
                 on_one_backend(|backend, renderer| {
-                    renderer.set_scene(&plan).unwrap();
-                    let actual = renderer.probe(FRAME, &pixels).unwrap();
+                    renderer.field.set_scene(&plan).unwrap();
+                    let actual = renderer.field.probe(FRAME, &pixels).unwrap();
                     let name = format!("{backend}, {evaluator} beside {bell} at {tolerance:e}");
                     within(plan.predicted.total(), &name, &pixels, &exact, &actual);
                 });
@@ -126,7 +126,7 @@ fn split_fields_meet_at_tiles_bit_for_bit_and_leave_no_trace() {
             let once = bits(&glare(renderer, &mine, FRAME));
             let stretched = bits(&renderer.glare(FRAME, &settings).unwrap());
             glare(renderer, &theirs, FRAME);
-            renderer.set_tile_pixels(1000);
+            renderer.field.set_tile_pixels(1000);
             assert!(bits(&glare(renderer, &mine, FRAME)) == once, "{evaluator}");
             assert!(bits(&renderer.glare(FRAME, &settings).unwrap()) == stretched, "{evaluator}, stretched");
         });

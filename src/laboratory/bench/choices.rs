@@ -87,7 +87,7 @@ fn outcome(stage: &Stage, seed: u64) -> Result<Outcome> {
     })?;
     let times: Vec<Samples> = times.into_iter().map(|times| times.into_iter().collect()).collect();
     let fastest = (0..times.len()).min_by(|&a, &b| times[a].median().total_cmp(&times[b].median())).unwrap_or_default();
-    let certificate = Certificate::measure(actors[0].renderer(), &chosen)?;
+    let certificate = Certificate::measure(&mut actors[0].renderer().field, &chosen)?;
     Ok(Outcome {
         name: format!("{seed}: {} x {}, K = {}, {tolerance:.0e}", frame.width, frame.height, problem.ghosts().len()),
         chosen: chosen.evaluator(),

@@ -10,7 +10,7 @@ use crate::gpu::PassTime;
 use crate::measure::Samples;
 use crate::plan::{Request, plan};
 use crate::problem::Problem;
-use crate::renderer::{Renderer, Settings};
+use crate::renderer::{Picture, Settings};
 
 /// A frame of the default path from photo to photo, twice: the second needs no shader compiled.
 pub(super) fn frame(stage: &Stage, opened: Duration, report: &mut Report) -> Result<()> {
@@ -22,14 +22,14 @@ pub(super) fn frame(stage: &Stage, opened: Duration, report: &mut Report) -> Res
 
     let started = Instant::now();
     let mut renderer = stage.renderer()?;
-    renderer.set_timing(true);
+    renderer.field.set_timing(true);
     let ready = started.elapsed();
-    let mut frame = |renderer: &mut Renderer| -> Result<(Duration, Vec<PassTime>)> {
+    let mut frame = |renderer: &mut Picture| -> Result<(Duration, Vec<PassTime>)> {
         let started = Instant::now();
-        renderer.forget_scene();
-        renderer.set_scene(&plan)?;
+        renderer.field.forget_scene();
+        renderer.field.set_scene(&plan)?;
         renderer.composite(stage.frame, &mut pixels, &Settings::default())?;
-        Ok((started.elapsed(), sums(renderer.take_times())))
+        Ok((started.elapsed(), sums(renderer.field.take_times())))
     };
     let (first, first_passes) = frame(&mut renderer)?;
     let (second, second_passes) = frame(&mut renderer)?;

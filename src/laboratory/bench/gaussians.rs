@@ -20,7 +20,7 @@ pub(super) fn of_one_size(stage: &Stage, report: &mut Report, count: usize, sigm
     let request = stage.request(tolerance);
     let planned = plan(&problem, &request)?;
     let mut actor = stage.actor(&planned)?;
-    let certificate = Certificate::measure(actor.renderer(), &planned)?;
+    let certificate = Certificate::measure(&mut actor.renderer().field, &planned)?;
 
     let shared = RefCell::new(&mut actor);
     let arms: [Arm<'_>; 5] = [

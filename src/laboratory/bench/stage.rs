@@ -7,7 +7,7 @@ use crate::frame::Frame;
 use crate::gpu::{Device, PassTime};
 use crate::measure::{Rounds, Samples};
 use crate::plan::{CostModel, Plan, Request};
-use crate::renderer::{Renderer, Settings};
+use crate::renderer::{Picture, Settings};
 
 /// One of the things that are timed in turns.
 pub(super) type Arm<'a> = &'a mut dyn FnMut() -> Result<()>;
@@ -23,7 +23,7 @@ pub(super) struct Stage {
 
 /// A renderer with a scene and a photo.
 pub(super) struct Actor {
-    renderer: Renderer,
+    renderer: Picture,
     trusted: bool,
     plan: Plan,
 }
@@ -61,9 +61,9 @@ impl Stage {
     }
 
     /// A renderer that takes the whole picture for one tile.
-    pub fn renderer(&self) -> Result<Renderer> {
-        let mut renderer = Renderer::new(&self.device)?;
-        renderer.set_tile_pixels(self.frame.window.pixels());
+    pub fn renderer(&self) -> Result<Picture> {
+        let mut renderer = Picture::new(&self.device)?;
+        renderer.field.set_tile_pixels(self.frame.window.pixels());
         Ok(renderer)
     }
 
@@ -71,14 +71,14 @@ impl Stage {
     pub fn actor(&self, plan: &Plan) -> Result<Actor> {
         let (mut renderer, frame) = (self.renderer()?, plan.problem().frame());
         renderer.load(frame, &vec![[0.5; 4]; frame.window.pixels()])?;
-        renderer.set_scene(plan)?;
+        renderer.field.set_scene(plan)?;
         Ok(Actor { renderer, trusted: self.trusted(), plan: plan.clone() })
     }
 }
 
 impl Actor {
     /// What renders, the scene set.
-    pub fn renderer(&mut self) -> &mut Renderer {
+    pub fn renderer(&mut self) -> &mut Picture {
         &mut self.renderer
     }
 
@@ -96,34 +96,34 @@ impl Actor {
 
     /// The spectrum alone, anew.
     pub fn spectrum(&mut self) -> Result<()> {
-        self.renderer.forget_scene();
-        self.renderer.set_scene(&self.plan)?;
+        self.renderer.field.forget_scene();
+        self.renderer.field.set_scene(&self.plan)?;
         self.finish()
     }
 
     /// The spectrum anew, then the picture.
     pub fn everything(&mut self) -> Result<()> {
-        self.renderer.forget_scene();
-        self.renderer.set_scene(&self.plan)?;
+        self.renderer.field.forget_scene();
+        self.renderer.field.set_scene(&self.plan)?;
         self.frame()
     }
 
     /// Waits for the device.
     pub fn finish(&self) -> Result<()> {
-        self.renderer.finish();
+        self.renderer.field.finish();
         Ok(())
     }
 
     /// Times every pass of `work`, round after round, after one that is not counted.
     pub fn passes(&mut self, rounds: Rounds, work: impl Fn(&mut Self) -> Result<()>) -> Result<Vec<Pass>> {
         work(self)?;
-        self.renderer.set_timing(true);
+        self.renderer.field.set_timing(true);
         let mut times = Vec::new();
         for _ in 0..rounds.timed() {
             work(self)?;
-            times.push(sums(self.renderer.take_times()));
+            times.push(sums(self.renderer.field.take_times()));
         }
-        self.renderer.set_timing(false);
+        self.renderer.field.set_timing(false);
         Ok(gathered(&times, self.trusted))
     }
 }

@@ -12,7 +12,7 @@ use crate::laboratory::bench::scenes::scattered;
 use crate::measure::Rounds;
 use crate::plan::{Evaluator, Lattice, Plan, Request, Transform, plan};
 use crate::problem::Problem;
-use crate::renderer::{Renderer, Settings};
+use crate::renderer::{Picture, Settings};
 use crate::scene::Ghost;
 use crate::series::moments::Cells;
 
@@ -58,7 +58,7 @@ impl Arm {
 /// Every arm; what two of them differ in is a constant's work.
 pub(super) struct Arms {
     pub all: Vec<Arm>,
-    renderers: Vec<Renderer>,
+    renderers: Vec<Picture>,
 }
 
 /// The arms' places in [`Arms::all`].
@@ -87,8 +87,8 @@ impl Arms {
     pub fn new(device: &Rc<Device>) -> Result<Self> {
         let frames = pictures(device.info().software);
         let renderer = |frame: &Frame| {
-            let mut renderer = Renderer::new(device)?;
-            renderer.set_tile_pixels(frame.window.pixels());
+            let mut renderer = Picture::new(device)?;
+            renderer.field.set_tile_pixels(frame.window.pixels());
             renderer.load(*frame, &vec![[0.5; 4]; frame.window.pixels()])?;
             Ok(renderer)
         };
@@ -151,14 +151,14 @@ impl Arms {
     fn one(&mut self, index: usize) -> Result<f64> {
         let arm = &self.all[index];
         let renderer = &mut self.renderers[arm.picture];
-        renderer.set_scene(&arm.plan)?;
+        renderer.field.set_scene(&arm.plan)?;
         renderer.draw(arm.plan.problem().frame(), &Settings::default())?;
-        renderer.finish();
+        renderer.field.finish();
         let started = Instant::now();
         for _ in 0..arm.repeats {
             if matches!(arm.work, Work::Spectrum | Work::Everything) {
-                renderer.forget_scene();
-                renderer.set_scene(&arm.plan)?;
+                renderer.field.forget_scene();
+                renderer.field.set_scene(&arm.plan)?;
             }
             match arm.work {
                 Work::Copy => renderer.draw_copy()?,
@@ -166,7 +166,7 @@ impl Arms {
                 Work::Spectrum => {}
             }
         }
-        renderer.finish();
+        renderer.field.finish();
         Ok(started.elapsed().as_secs_f64() * 1e3 / arm.repeats as f64)
     }
 }

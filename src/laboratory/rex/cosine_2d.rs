@@ -9,7 +9,7 @@ use super::chart::{Axis, Chart, Map, Scalar, Series, Stroke, side_by_side};
 use super::plane::{Canvas, Drawn, SIDE, Scene};
 use super::{Figure, Lab, Report};
 use crate::Result;
-use crate::renderer::Renderer;
+use crate::renderer::Picture;
 use crate::series::Bell;
 use crate::series::printed::{Slips, Zeroth, cosine_table};
 
@@ -50,7 +50,7 @@ struct Variant {
 /// # Errors
 /// [`crate::Error::NoContext`] and [`crate::Error::Gl`] from OpenGL.
 pub fn run(lab: &mut Lab, args: &Args) -> Result<Report> {
-    let mut renderer = Renderer::new(&lab.device()?)?;
+    let mut renderer = Picture::new(&lab.device()?)?;
     let mut report = Report::new("cos²x cos²y, two ghosts");
     describe(&mut report, args);
     let scene = Scene {
@@ -165,7 +165,7 @@ fn pictures(report: &mut Report, variants: &[Variant], drawn: &[Drawn]) -> Resul
 }
 
 /// The values along y of the first ghost.
-fn cut(variants: &[Variant], scene: &Scene, renderer: &mut Renderer) -> Result<Figure> {
+fn cut(variants: &[Variant], scene: &Scene, renderer: &mut Picture) -> Result<Figure> {
     let y = CENTERS[0].y;
     let line = Canvas::along_x(600, [-3.0, 3.0], y);
     let points = |values: &mut dyn Iterator<Item = f64>| -> Vec<[f64; 2]> {

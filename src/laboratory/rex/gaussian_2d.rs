@@ -6,7 +6,7 @@ use super::chart::{Axis, COLOURS, Chart, Map, Series, Stroke};
 use super::plane::{Canvas, Drawn, SIDE, Scene};
 use super::{Figure, Lab, Report, Table};
 use crate::Result;
-use crate::renderer::{Renderer, Settings};
+use crate::renderer::{Picture, Settings};
 use crate::series::Bell;
 use crate::series::printed::{GaussianForm, gaussian_table, table_value};
 
@@ -79,7 +79,7 @@ pub fn run(lab: &mut Lab, args: &Args) -> Result<Report> {
     if !(args.sigma > 0.0 && args.sigma.is_finite()) {
         return Err(crate::Error::Usage(format!("σ has to be positive, and {} is not", args.sigma)));
     }
-    let mut renderer = Renderer::new(&lab.device()?)?;
+    let mut renderer = Picture::new(&lab.device()?)?;
     let mut report = Report::new("The Gaussian in two dimensions");
     describe(&mut report, args);
     for case in cases(args) {
@@ -181,7 +181,7 @@ impl Section {
         points
     }
 
-    fn add(&self, report: &mut Report, case: &Case, renderer: &mut Renderer, args: &Args) -> Result<()> {
+    fn add(&self, report: &mut Report, case: &Case, renderer: &mut Picture, args: &Args) -> Result<()> {
         let scene = &case.scene;
         let field = scene.draw(renderer, self.canvas, &Settings::default())?;
         let mut chart = Chart::new(format!("{}, {}", self.title, case.title), self.axis, "value")

@@ -7,7 +7,7 @@ use super::chart::{Map, Scalar, side_by_side};
 use super::plane::{Canvas, Drawn, Scene};
 use super::{Figure, Lab, Report};
 use crate::Result;
-use crate::renderer::{Normalize, Renderer, Settings};
+use crate::renderer::{Normalize, Picture, Settings};
 use crate::series::Bell;
 use crate::series::printed::last_mip;
 
@@ -52,7 +52,7 @@ pub fn run(lab: &mut Lab, args: &Args) -> Result<Report> {
             return Err(crate::Error::Usage(format!("{name} has to be positive, and {value} is not")));
         }
     }
-    let mut renderer = Renderer::new(&lab.device()?)?;
+    let mut renderer = Picture::new(&lab.device()?)?;
     let half = 0.5 * args.period * DVec2::new(1.0, 0.75);
     let scene = scene(args, half);
     let canvas = Canvas::new([args.size, (args.size * 3 / 4).max(1)], [-half.x, half.x], [-half.y, half.y]);
@@ -64,7 +64,7 @@ pub fn run(lab: &mut Lab, args: &Args) -> Result<Report> {
         let mut draw = |normalize| scene.draw(&mut renderer, canvas, &with(normalize));
         [draw(Normalize::None)?, draw(Normalize::Minmax)?, draw(Normalize::Clamp)?]
     };
-    let range = renderer.range(canvas.frame)?;
+    let range = renderer.field.range(canvas.frame)?;
     pictures(&mut report, &stretched, &clamped);
     measure(&mut report, &scene, &plain, range, [&stretched, &clamped]);
     Ok(report)

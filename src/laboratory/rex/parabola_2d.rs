@@ -7,7 +7,7 @@ use super::chart::{Axis, Chart, Map, Series, Stroke, side_by_side};
 use super::plane::{Canvas, Drawn, SIDE, Scene};
 use super::{Figure, Lab, Report, Table};
 use crate::Result;
-use crate::renderer::{Renderer, Settings};
+use crate::renderer::{Picture, Settings};
 use crate::series::Bell;
 use crate::series::printed::Printed2d;
 
@@ -56,7 +56,7 @@ pub fn run(lab: &mut Lab, args: &Args) -> Result<Report> {
     if !(args.period >= 2.0 && args.period.is_finite()) {
         return Err(crate::Error::Usage(format!("a period of {} is narrower than the bell, 2", args.period)));
     }
-    let mut renderer = Renderer::new(&lab.device()?)?;
+    let mut renderer = Picture::new(&lab.device()?)?;
     let mut report = Report::new("The parabola in two dimensions, square and round");
     describe(&mut report, args);
     let drawings = drawings(&mut renderer, args)?;
@@ -108,7 +108,7 @@ fn canvas(args: &Args) -> Canvas {
     Canvas::new([args.size; 2], [-REACH, REACH], [-REACH, REACH])
 }
 
-fn drawings(renderer: &mut Renderer, args: &Args) -> Result<Vec<Drawing>> {
+fn drawings(renderer: &mut Picture, args: &Args) -> Result<Vec<Drawing>> {
     let kinds = [("product", "(1 − x²)(1 − y²)", Bell::Parabola), ("paraboloid", "1 − x² − y²", Bell::Paraboloid)];
     let draw = |(stem, name, bell)| {
         let scene = scene(bell, args);
@@ -179,7 +179,7 @@ fn outlines(drawings: &[Drawing]) -> Table {
 }
 
 /// The half disc's diagonal, as 000 prints it.
-fn as_printed(report: &mut Report, renderer: &mut Renderer, args: &Args) -> Result<()> {
+fn as_printed(report: &mut Report, renderer: &mut Picture, args: &Args) -> Result<()> {
     let scene = scene(Bell::Paraboloid, args);
     let table = Printed2d::HalfDisc.table(scene.period, scene.degree);
     let field = scene.draw_table(renderer, canvas(args), &table)?;

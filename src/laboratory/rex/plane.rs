@@ -13,7 +13,7 @@ use crate::Result;
 use crate::frame::Frame;
 use crate::plan::{Evaluator, Group, Layer, Plan, Series, Transform};
 use crate::problem::Problem;
-use crate::renderer::{Renderer, Settings};
+use crate::renderer::{Picture, Settings};
 use crate::scene::Ghost;
 use crate::series::Bell;
 
@@ -137,6 +137,7 @@ impl Scene {
                 period: self.period * canvas.scale,
                 counts: vec![self.degree[1] + 1; self.degree[0] as usize + 1].into(),
                 groups: vec![group],
+                modes: None,
                 lattice: None,
             }),
         };
@@ -153,15 +154,15 @@ impl Scene {
     ///
     /// # Errors
     /// [`crate::Error::Gl`] where the driver refuses.
-    pub fn set(&self, renderer: &mut Renderer, canvas: &Canvas, evaluator: Evaluator) -> Result<()> {
-        renderer.set_scene(&self.plan(canvas, evaluator))
+    pub fn set(&self, renderer: &mut Picture, canvas: &Canvas, evaluator: Evaluator) -> Result<()> {
+        renderer.field.set_scene(&self.plan(canvas, evaluator))
     }
 
     /// The field of the series on the GPU, summed at every pixel as the prototype did.
     ///
     /// # Errors
     /// [`crate::Error::Gl`] where the driver refuses.
-    pub fn draw(&self, renderer: &mut Renderer, canvas: Canvas, settings: &Settings) -> Result<Drawn> {
+    pub fn draw(&self, renderer: &mut Picture, canvas: Canvas, settings: &Settings) -> Result<Drawn> {
         self.set(renderer, &canvas, Evaluator::Series)?;
         Drawn::new(renderer, canvas, settings)
     }
@@ -170,16 +171,16 @@ impl Scene {
     ///
     /// # Errors
     /// [`crate::Error::Gl`] where the driver refuses.
-    pub fn draw_table(&self, renderer: &mut Renderer, canvas: Canvas, table: &[[f64; 4]]) -> Result<Drawn> {
+    pub fn draw_table(&self, renderer: &mut Picture, canvas: Canvas, table: &[[f64; 4]]) -> Result<Drawn> {
         let plan = self.plan(&canvas, Evaluator::Series);
         let table: Vec<_> = table.iter().map(|mode| mode.map(|value| value as f32)).collect();
-        renderer.set_tabulated(&plan, &table)?;
+        renderer.field.set_tabulated(&plan, &table)?;
         Drawn::new(renderer, canvas, &Settings::default())
     }
 }
 
 impl Drawn {
-    fn new(renderer: &mut Renderer, canvas: Canvas, settings: &Settings) -> Result<Self> {
+    fn new(renderer: &mut Picture, canvas: Canvas, settings: &Settings) -> Result<Self> {
         let pixels = renderer.glare(canvas.frame, settings)?;
         let values = pixels.iter().map(|pixel| f64::from(pixel[0])).collect();
         let scalar = Scalar { width: canvas.frame.width, height: canvas.frame.height, values };

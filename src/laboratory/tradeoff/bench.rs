@@ -8,7 +8,7 @@ use crate::frame::{Frame, Window};
 use crate::gpu::Device;
 use crate::measure::{Rounds, Samples, in_turns};
 use crate::plan::{CostModel, Evaluator, Plan, Request};
-use crate::renderer::{Renderer, Settings};
+use crate::renderer::{Picture, Settings};
 
 /// The part of a picture, one over this many rows, that a first try of a slow evaluator draws.
 const TRY: u32 = 64;
@@ -18,7 +18,7 @@ pub(super) struct Bench {
     device: Rc<Device>,
     /// What plans reckon with.
     cost_model: CostModel,
-    pub renderer: Renderer,
+    pub renderer: Picture,
     pub rounds: Rounds,
     /// How long one draw of a slow evaluator may take, in milliseconds: where a picture would take longer, a part of it
     /// is drawn and its time scaled.
@@ -52,8 +52,8 @@ impl Bench {
     /// # Errors
     /// [`crate::Error::Gl`] where the driver refuses.
     pub fn new(device: &Rc<Device>, cost_model: CostModel, quick: bool, pixels: usize) -> Result<Self> {
-        let mut renderer = Renderer::new(device)?;
-        renderer.set_tile_pixels(pixels);
+        let mut renderer = Picture::new(device)?;
+        renderer.field.set_tile_pixels(pixels);
         let (rounds, patience) = if quick { (Rounds::new(1, 4), 40.0) } else { (Rounds::new(2, 10), 250.0) };
         Ok(Self { device: device.clone(), cost_model, renderer, rounds, patience })
     }
@@ -113,14 +113,14 @@ impl Bench {
     fn run(&mut self, arm: &Arm<'_>, part: Window) -> Result<[f64; 2]> {
         let frame = arm.frame().with_window(part);
         self.renderer.load(frame, &vec![[0.5; 4]; part.pixels()])?;
-        self.renderer.forget_scene();
-        self.renderer.finish();
+        self.renderer.field.forget_scene();
+        self.renderer.field.finish();
         let started = Instant::now();
-        self.renderer.set_scene(arm.plan)?;
-        self.renderer.finish();
+        self.renderer.field.set_scene(arm.plan)?;
+        self.renderer.field.finish();
         let spectrum = started.elapsed();
         self.renderer.draw(frame, &Settings::default())?;
-        self.renderer.finish();
+        self.renderer.field.finish();
         Ok([spectrum, started.elapsed()].map(|time| time.as_secs_f64() * 1e3))
     }
 }

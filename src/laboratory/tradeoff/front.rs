@@ -30,7 +30,10 @@ pub struct Recommendation {
     pub width: u32,
     pub height: u32,
     pub ms: f64,
+    /// The largest error of any picture at this tolerance, where all pixels of the timed one were measured, or a sample.
     pub measured: f64,
+    /// Whether all of them were.
+    pub everywhere: bool,
     /// At the sample's pixels and, where pictures of it were drawn, at all of theirs.
     pub delta_e_max: f64,
     pub psnr_db: f64,
@@ -115,13 +118,15 @@ pub(super) fn recommend(points: &[Point]) -> Option<Recommendation> {
     let chosen = choice(points)?;
     let largest = points.iter().rfind(|point| point.sweep == Sweep::Size && point.planner && point.ms.is_some());
     let timed = largest.unwrap_or(chosen);
+    let same = points.iter().filter(|point| point.planner && point.asked == chosen.asked);
     Some(Recommendation {
         tolerance: chosen.asked?,
         evaluator: timed.evaluator?,
         width: timed.width,
         height: timed.height,
         ms: timed.ms?,
-        measured: timed.measured?,
+        measured: same.filter_map(|point| point.measured).fold(timed.measured?, f64::max),
+        everywhere: false,
         delta_e_max: chosen.delta_e_max?,
         psnr_db: chosen.psnr_db?,
         invisible: chosen.delta_e_max? < VISIBLE,
@@ -138,9 +143,10 @@ impl Recommendation {
     /// In a sentence.
     pub fn sentence(&self) -> String {
         let seen = if self.invisible { "invisible" } else { "visible where it is worst" };
+        let where_measured = if self.everywhere { "over all pixels" } else { "at a sample of the pixels" };
         format!(
-            "Use --tolerance {}: glare for {} × {} pixels costs {} ms by {}; the largest error measured is {:.1e} of the \
-             largest glare, which is {seen} (ΔE2000 up to {}).",
+            "Use --tolerance {}: glare for {} × {} pixels costs {} ms by {}; the largest error measured {where_measured} is \
+             {:.1e} of the largest glare, which is {seen} (ΔE2000 up to {}).",
             exponent(self.tolerance),
             self.width,
             self.height,

@@ -156,7 +156,7 @@ fn picked<'a>(points: &'a [Point], front: &[usize]) -> Vec<&'a Point> {
 fn field(study: &mut Study<'_>, point: &Point, frame: Frame) -> Result<Vec<[f64; 3]>> {
     let request = Request { evaluator: point.evaluator, ..study.bench.request(point.asked.unwrap_or(1e-3)) };
     let plan = plan(&study.problem.on(frame), &request)?;
-    study.bench.renderer.set_scene(&plan)?;
+    study.bench.renderer.field.set_scene(&plan)?;
     let glare = study.bench.renderer.glare(frame, &Settings::default())?;
     Ok(glare.into_iter().map(|[r, g, b, _]| [r, g, b].map(f64::from)).collect())
 }

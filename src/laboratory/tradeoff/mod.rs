@@ -134,6 +134,12 @@ pub fn measure(
     let front = front::front(&points);
     let mut looks = Looks::default();
     stage(&mut |watch| looks::looks(&mut study, &points, &front, watch).map(|found| looks = found))?;
+    let mut recommendation = front::recommend(&points);
+    if let Some(found) = &mut recommendation
+        && let Some(measured) = study.everywhere(found.tolerance, [found.width, found.height])?
+    {
+        (found.measured, found.everywhere) = (found.measured.max(measured), true);
+    }
     let seen = front::choice(&points).and_then(|point| looks.delta_e(point));
     // Whichever evaluator the planner takes, the phases are those of a series.
     let tight = study.tightest(|request| Request { evaluator: Some(Evaluator::Rows), ..request });
@@ -150,7 +156,7 @@ pub fn measure(
         sample: study.sample.pixels.len(),
         device: device.info().clone(),
         calibrated: costs.is_some(),
-        recommendation: front::recommend(&points).map(|found| found.seen(seen.unwrap_or(0.0))),
+        recommendation: recommendation.map(|found| found.seen(seen.unwrap_or(0.0))),
         crossovers: front::crossovers(&points),
         phase_reach: tight
             .map(|(_, plan)| f64::from(plan.degree()[0]) * 0.5 * wide(&study) / period)

@@ -11,7 +11,7 @@ use super::point::{Point, Sweep};
 use super::sample::Sample;
 use super::{Subject, Watch};
 use crate::Result;
-use crate::certificate::sample_pixels;
+use crate::certificate::{Certificate, sample_pixels};
 use crate::frame::Frame;
 use crate::gpu::Device;
 use crate::photo::Photo;
@@ -21,6 +21,9 @@ use crate::problem::Problem;
 /// Pixels of the pictures that sweeps run at, at most: a quick look, and a thorough one.
 const QUICK_PIXELS: f64 = 3e5;
 const PIXELS: f64 = 2.1e6;
+
+/// Bells that may be summed in f64 to measure an error at every pixel: some seconds.
+const MOST_BELLS: usize = 500_000_000;
 
 /// Tolerances that a period and a degree are taken from, the first that can be had: so that what a sweep varies is
 /// what its errors come from.
@@ -70,6 +73,20 @@ impl<'a> Study<'a> {
         })
     }
 
+    /// The largest error at every pixel of a picture of this size, by the planner's own plan; none where the direct sum of
+    /// all of them takes long.
+    ///
+    /// # Errors
+    /// [`crate::Error::Gl`] where the driver refuses.
+    pub fn everywhere(&mut self, tolerance: f64, [width, height]: [u32; 2]) -> Result<Option<f64>> {
+        let problem = self.problem.on(self.subject.photo.frame.resized(width, height));
+        if self.subject.ghosts.len().saturating_mul(problem.frame().window.pixels()) > MOST_BELLS {
+            return Ok(None);
+        }
+        let Ok(plan) = plan(&problem, &self.request(tolerance)) else { return Ok(None) };
+        Ok(Some(Certificate::measure_all(&mut self.bench.renderer.field, &plan, |_| ())?.measured))
+    }
+
     /// Points of the photo's own ghosts: their quality at the sample, and their times.
     ///
     /// # Errors
@@ -89,8 +106,8 @@ impl<'a> Study<'a> {
         let timings = self.bench.time(&arms, watch)?;
         let mut points = Vec::new();
         for ((asked, plan), timing) in plans.iter().zip(indices.iter().map(|&index| &timings[index])) {
-            self.bench.renderer.set_scene(plan)?;
-            let field = self.bench.renderer.probe(frame, &self.sample.pixels)?;
+            self.bench.renderer.field.set_scene(plan)?;
+            let field = self.bench.renderer.field.probe(frame, &self.sample.pixels)?;
             let quality = self.sample.judge(&field);
             points.push(Point::planned(sweep, frame, *asked, plan).with_quality(&quality).with_timing(timing));
         }

@@ -127,18 +127,18 @@ pub(super) fn storage(study: &mut Study<'_>, watch: Watch<'_>) -> Result<Vec<Poi
         let Ok(plan) = plan(&study.problem, &request) else { continue };
         let renderer = &mut study.bench.renderer;
         for storage in [Storage::Float, Storage::Half] {
-            renderer.forget_scene();
-            renderer.set_scene(&plan)?;
+            renderer.field.forget_scene();
+            renderer.field.set_scene(&plan)?;
             if storage == Storage::Half {
-                renderer.round_spectrum()?;
+                renderer.field.round_spectrum()?;
             }
-            let quality = study.sample.judge(&renderer.probe(frame, &study.sample.pixels)?);
+            let quality = study.sample.judge(&renderer.field.probe(frame, &study.sample.pixels)?);
             let point = Point::planned(Sweep::Storage, frame, Some(tolerance), &plan).with_quality(&quality);
             // No bound of the plan holds for rounded terms.
             let predicted = point.predicted.filter(|_| storage == Storage::Float);
             points.push(Point { storage, predicted, ..point });
         }
-        renderer.forget_scene();
+        renderer.field.forget_scene();
         watch((done + 1) as f64 / 6.0);
     }
     Ok(points)
@@ -202,7 +202,7 @@ fn certified(
         match plan {
             Ok(plan) => {
                 let renderer = &mut study.bench.renderer;
-                let certificate = Certificate::measure(renderer, plan)?;
+                let certificate = Certificate::measure(&mut renderer.field, plan)?;
                 let point = Point::planned(sweep, frame, asked, plan);
                 let timing = timings.next().expect("a timing for each plan");
                 points.push(Point { measured: Some(certificate.measured), ..point.with_timing(&timing) });

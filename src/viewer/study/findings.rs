@@ -8,7 +8,7 @@ use crate::false_colour::Map;
 use crate::frame::Frame;
 use crate::plan::{self, HIGHEST_DEGREE, Plan, Request};
 use crate::reference;
-use crate::renderer::Renderer;
+use crate::renderer::Field;
 use crate::scene::Ghost;
 
 /// The most points of a cut.
@@ -57,7 +57,7 @@ pub(super) struct Section {
 }
 
 impl Section {
-    pub fn take(renderer: &mut Renderer, cut: Cut, frame: Frame) -> Result<Self> {
+    pub fn take(field: &mut Field, cut: Cut, frame: Frame) -> Result<Self> {
         let window = frame.window;
         let (length, across) =
             if cut.horizontal { (window.width, window.height) } else { (window.height, window.width) };
@@ -69,7 +69,7 @@ impl Section {
             [window.x + i, window.y + j]
         };
         let pixels: Vec<_> = (0..count).map(pixel).collect();
-        let rendered = renderer.probe(frame, &pixels)?;
+        let rendered = field.probe(frame, &pixels)?;
         Ok(Self { horizontal: cut.horizontal, frame, pixels, rendered })
     }
 

@@ -120,7 +120,7 @@ fn flat_fields_have_no_contrast_to_stretch() {
             for evaluator in Evaluator::ALL {
                 let plan = plan_with(ghosts, frame(), 1e-4, evaluator);
                 let field = glare(renderer, &plan, frame());
-                let range = renderer.range(frame()).unwrap();
+                let range = renderer.field.range(frame()).unwrap();
                 let stretched = renderer.glare(frame(), &settings).unwrap();
                 assert!(field.as_flattened().iter().all(|value| value.is_finite()), "{name}");
                 let black = stretched.iter().all(|pixel| pixel[..3] == [0.0; 3]);
@@ -140,8 +140,8 @@ fn weak_contrast_is_stretched_all_the_same() {
             let ghosts = [scenes::one([0.3, 0.1], size, [1.0; 3])];
             for evaluator in Evaluator::ALL {
                 let plan = plan_with(&ghosts, frame(), 1e-5, evaluator);
-                renderer.set_scene(&plan).unwrap();
-                let [low, high] = renderer.range(frame()).unwrap();
+                renderer.field.set_scene(&plan).unwrap();
+                let [low, high] = renderer.field.range(frame()).unwrap();
                 let stretched = renderer.glare(frame(), &settings).unwrap();
                 let ends = stretched
                     .iter()
@@ -167,7 +167,7 @@ fn half_floats_near_their_end() {
     let mut pixels = vec![[0.0, 0.0, 0.5, 1.0]; 33];
     on_backend(Backend::ALL[0], |renderer| {
         let plan = plan_with(&ghosts, frame, 1e-4, Evaluator::Rows);
-        renderer.set_scene(&plan).unwrap();
+        renderer.field.set_scene(&plan).unwrap();
         renderer.composite(frame, &mut pixels, &Settings::default()).unwrap();
     });
     let photo = Photo::new(33, 1, pixels.clone());

@@ -146,11 +146,11 @@ fn the_singularity_of_cosine_squared_is_none_on_the_gpu() {
                 let (period, degree) = (Some(DVec2::splat(4.0)), Some([5; 2]));
                 let asked_for = Request { period, degree, evaluator: Some(Evaluator::Rows), ..request(1e-1) };
                 let plan = plan(&ghosts, frame, &asked_for).unwrap();
-                renderer.set_scene(&plan).unwrap();
+                renderer.field.set_scene(&plan).unwrap();
                 // Against the same terms in f64: the harmonic at the singularity is a tenth of the field.
                 let exact: Vec<_> =
                     points.iter().map(|&at| series(&ghosts, plan.period(), &plan.counts(), at)).collect();
-                let difference = compare(&exact, &renderer.probe(frame, &pixels).unwrap());
+                let difference = compare(&exact, &renderer.field.probe(frame, &pixels).unwrap());
                 worst.take(difference.relative, || format!("{}, half width {half}", ghosts[0].bell));
             }
         }

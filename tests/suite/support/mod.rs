@@ -5,7 +5,7 @@ pub mod scenes;
 mod stage;
 pub mod table;
 
-pub use stage::{on_backend, on_device, on_fresh_renderer};
+pub use stage::{on_backend, on_device, on_fresh_renderer, on_live};
 
 use std::cell::RefCell;
 use std::rc::{Rc, Weak};
@@ -16,7 +16,7 @@ use vglare::frame::Frame;
 use vglare::gpu::Backend;
 use vglare::plan::{self, Evaluator, Plan, Request};
 use vglare::problem::Problem;
-use vglare::renderer::{Renderer, Settings};
+use vglare::renderer::{Picture, Settings};
 use vglare::scene::Ghost;
 
 /// Runs `test` once on each backend, with what [`on_backend`] gives.
@@ -27,12 +27,12 @@ use vglare::scene::Ghost;
 /// own (`evaluators`): what else is a matter of numbers is held to them by [`on_one_backend`].
 ///
 /// Fails where a backend gives no context: a machine without GL has not run these tests.
-pub fn on_each_backend<T: Send>(test: impl Fn(Backend, &mut Renderer) -> T + Sync) -> Vec<T> {
+pub fn on_each_backend<T: Send>(test: impl Fn(Backend, &mut Picture) -> T + Sync) -> Vec<T> {
     Backend::ALL.into_iter().map(|backend| on_backend(backend, |renderer| test(backend, renderer))).collect()
 }
 
 /// Runs `test` on the backend that tests of numbers use.
-pub fn on_one_backend<T: Send>(test: impl FnOnce(Backend, &mut Renderer) -> T + Send) -> T {
+pub fn on_one_backend<T: Send>(test: impl FnOnce(Backend, &mut Picture) -> T + Send) -> T {
     on_backend(Backend::ALL[0], |renderer| test(Backend::ALL[0], renderer))
 }
 
@@ -78,8 +78,8 @@ pub fn plan_with(ghosts: &[Ghost], frame: Frame, tolerance: f64, evaluator: Eval
 }
 
 /// The glare alone, at every pixel of the frame's window.
-pub fn glare(renderer: &mut Renderer, plan: &Plan, frame: Frame) -> Vec<[f32; 4]> {
-    renderer.set_scene(plan).unwrap();
+pub fn glare(renderer: &mut Picture, plan: &Plan, frame: Frame) -> Vec<[f32; 4]> {
+    renderer.field.set_scene(plan).unwrap();
     renderer.glare(frame, &Settings::default()).unwrap()
 }
 

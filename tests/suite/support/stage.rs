@@ -11,7 +11,7 @@ use std::sync::{LazyLock, Mutex, Once, PoisonError};
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use vglare::gpu::{Backend, Device};
-use vglare::renderer::Renderer;
+use vglare::renderer::{Live, Picture};
 
 use super::turn;
 
@@ -20,7 +20,7 @@ const TILE_PIXELS: usize = 4 << 20;
 
 thread_local! {
     /// What a stage keeps between tests.
-    static KEPT: RefCell<Option<(Renderer, Rc<Device>)>> = const { RefCell::new(None) };
+    static KEPT: RefCell<Option<(Live, Rc<Device>)>> = const { RefCell::new(None) };
     /// What the last panic on a stage says, and where it was.
     static SAID: Cell<Option<String>> = const { Cell::new(None) };
 }
@@ -39,16 +39,21 @@ pub fn on_device<T: Send>(backend: Backend, test: impl FnOnce(&Rc<Device>) -> T 
 }
 
 /// Runs `test` with a renderer that has done nothing yet.
-pub fn on_fresh_renderer<T: Send>(backend: Backend, test: impl FnOnce(&mut Renderer) -> T + Send) -> T {
-    on_device(backend, |device| test(&mut Renderer::new(device).unwrap()))
+pub fn on_fresh_renderer<T: Send>(backend: Backend, test: impl FnOnce(&mut Picture) -> T + Send) -> T {
+    on_device(backend, |device| test(&mut Picture::new(device).unwrap()))
 }
 
 /// Runs `test` with the backend's renderer, which has no scene and every setting as a fresh one has it.
-pub fn on_backend<T: Send>(backend: Backend, test: impl FnOnce(&mut Renderer) -> T + Send) -> T {
-    on_stage(backend, |renderer, _| test(renderer))
+pub fn on_backend<T: Send>(backend: Backend, test: impl FnOnce(&mut Picture) -> T + Send) -> T {
+    on_live(backend, |live| test(&mut live.picture))
 }
 
-fn on_stage<T: Send>(backend: Backend, test: impl FnOnce(&mut Renderer, &Rc<Device>) -> T + Send) -> T {
+/// The same, with what shows its pictures.
+pub fn on_live<T: Send>(backend: Backend, test: impl FnOnce(&mut Live) -> T + Send) -> T {
+    on_stage(backend, |live, _| test(live))
+}
+
+fn on_stage<T: Send>(backend: Backend, test: impl FnOnce(&mut Live, &Rc<Device>) -> T + Send) -> T {
     tell_panics();
     let (_, stage) = STAGES.iter().find(|(of, _)| *of == backend).expect("a backend that needs no window");
     // A stage has one test at a time, so that the thread with the context, where it waits for the others, finds no other
@@ -68,22 +73,23 @@ fn on_stage<T: Send>(backend: Backend, test: impl FnOnce(&mut Renderer, &Rc<Devi
 }
 
 /// Runs `test` with what is kept, or with a new one where nothing is; after a panic nothing is kept.
-fn with_kept<T>(backend: Backend, test: impl FnOnce(&mut Renderer, &Rc<Device>) -> T) -> T {
+fn with_kept<T>(backend: Backend, test: impl FnOnce(&mut Live, &Rc<Device>) -> T) -> T {
     let _turn = turn();
-    let (mut renderer, device) = KEPT.take().unwrap_or_else(|| {
+    let (mut live, device) = KEPT.take().unwrap_or_else(|| {
         let device = Device::open(&[backend]).unwrap_or_else(|error| panic!("these tests need GL: {error}"));
-        (Renderer::new(&device).unwrap(), device)
+        (Live::new(&device).unwrap(), device)
     });
-    renderer.forget_scene();
-    renderer.set_tile_pixels(TILE_PIXELS);
+    let renderer = &mut live.picture;
+    renderer.field.forget_scene();
+    renderer.field.set_tile_pixels(TILE_PIXELS);
     renderer.set_pixel_buffers(!device.info().software);
-    renderer.set_timing(false);
-    renderer.take_times();
-    let result = test(&mut renderer, &device);
+    renderer.field.set_timing(false);
+    renderer.field.take_times();
+    let result = test(&mut live, &device);
     // Another thread may draw next, and is to find nothing that this context has begun.
-    renderer.finish();
+    live.picture.field.finish();
     device.check("a test").unwrap();
-    KEPT.set(Some((renderer, device)));
+    KEPT.set(Some((live, device)));
     result
 }
 
@@ -107,8 +113,8 @@ fn a_panic_comes_back_and_leaves_no_trace() {
     let panic = panic::catch_unwind(|| on_backend(Backend::Egl, |_| -> () { panic!("as it should") })).unwrap_err();
     assert_eq!(panic.downcast_ref(), Some(&"as it should"));
     on_backend(Backend::Egl, |renderer| {
-        renderer.set_tile_pixels(1);
-        renderer.set_timing(true);
+        renderer.field.set_tile_pixels(1);
+        renderer.field.set_timing(true);
     });
-    on_backend(Backend::Egl, |renderer| assert!(renderer.take_times().is_empty()));
+    on_backend(Backend::Egl, |renderer| assert!(renderer.field.take_times().is_empty()));
 }

@@ -9,7 +9,7 @@ use crate::frame::Frame;
 use crate::gpu::{Device, PassTime};
 use crate::measure::{Rounds, Samples, interleave};
 use crate::plan::Evaluator;
-use crate::renderer::{Renderer, Settings};
+use crate::renderer::{Picture, Settings};
 
 /// The device, the picture and how often to measure.
 pub(super) struct Stage {
@@ -30,7 +30,7 @@ pub(super) struct Timed {
 
 /// A renderer with a scene and a black photo, ready to draw frames.
 struct Actor {
-    renderer: Renderer,
+    renderer: Picture,
     frame: Frame,
 }
 
@@ -38,7 +38,7 @@ impl Actor {
     /// A frame, to its end.
     fn draw(&mut self) -> Result<()> {
         self.renderer.draw(self.frame, &Settings::default())?;
-        self.renderer.finish();
+        self.renderer.field.finish();
         Ok(())
     }
 }
@@ -63,8 +63,8 @@ impl Stage {
     /// A renderer that takes the whole picture for one tile, with its spectrum computed.
     fn actor(&self, (scene, evaluator): (&Scene, Evaluator)) -> Result<Actor> {
         let canvas = canvas(self.size);
-        let mut renderer = Renderer::new(&self.device)?;
-        renderer.set_tile_pixels(canvas.frame.window.pixels());
+        let mut renderer = Picture::new(&self.device)?;
+        renderer.field.set_tile_pixels(canvas.frame.window.pixels());
         renderer.load(canvas.frame, &vec![[0.0; 4]; canvas.frame.window.pixels()])?;
         scene.set(&mut renderer, &canvas, evaluator)?;
         Ok(Actor { renderer, frame: canvas.frame })
@@ -88,13 +88,13 @@ impl Stage {
         let frames = interleave(self.rounds, arms)?;
         let mut passes = Vec::new();
         for actor in &mut actors {
-            actor.renderer.set_timing(true);
+            actor.renderer.field.set_timing(true);
             passes.push([Vec::new(), Vec::new()]);
         }
         for _ in 0..self.rounds.timed() {
             for (actor, [glare, all]) in actors.iter_mut().zip(&mut passes) {
                 actor.draw()?;
-                let times = actor.renderer.take_times();
+                let times = actor.renderer.field.take_times();
                 glare.push(self.sum(times.iter().filter(|time| time.pass == GLARE)));
                 all.push(self.sum(times.iter()));
             }

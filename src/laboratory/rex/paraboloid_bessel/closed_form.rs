@@ -11,7 +11,7 @@ use crate::Result;
 use crate::frame::Frame;
 use crate::plan::{Evaluator, Request, plan};
 use crate::problem::Problem;
-use crate::renderer::{Renderer, Settings};
+use crate::renderer::{Picture, Settings};
 use crate::series::fourier_bessel::truncation;
 use crate::series::{kappa, special};
 
@@ -97,7 +97,7 @@ pub(super) fn fields(lab: &mut Lab, setting: &Setting, size: u32, graf: &Measure
     row("Graf's form".into(), terms * (highest + 1), graf.error, graf.seconds);
     let (frame, degree, period) = (Frame::full(size, size), degree(setting, terms), period(setting));
     let problem = Problem::new(setting.ghosts(), frame);
-    let mut renderer = Renderer::new(&lab.device()?)?;
+    let mut renderer = Picture::new(&lab.device()?)?;
     for evaluator in [Evaluator::Rows, Evaluator::Grid] {
         let request = Request {
             period: Some(DVec2::splat(period)),
@@ -108,8 +108,8 @@ pub(super) fn fields(lab: &mut Lab, setting: &Setting, size: u32, graf: &Measure
         };
         let plan = plan(&problem, &request)?;
         let (_, seconds, pixels) = timed(|| {
-            renderer.forget_scene();
-            renderer.set_scene(&plan)?;
+            renderer.field.forget_scene();
+            renderer.field.set_scene(&plan)?;
             renderer.glare(frame, &Settings::default())
         })?;
         let errors = setting.errors(frame, |index| pixels[index][0].into());
