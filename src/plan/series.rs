@@ -175,8 +175,8 @@ impl Brief<'_> {
                 .spend(terms.groups.iter().map(|group| Decay::new(group, self.period).held_work(group)).sum())?;
         }
         let marginals = marginals.unwrap_or_else(|| Marginals::by_weights(&terms.groups, degree, self.period));
-        // Where the series is given there may be nothing left: then a lattice is to cost about what rounding does.
-        let budget = interpolation * self.usable.max(if self.given() { self.predicted.single() } else { 0.0 });
+        // Where the series is given there may be nothing left: then a lattice is to cost a little of what rounding does.
+        let budget = interpolation * self.usable.max(if self.given() { 0.1 * self.predicted.single() } else { 0.0 });
         let over = self.request.oversampling;
         let lattice = lattice::coarsest(degree, self.period, &marginals, self.frame, over, budget)?;
         self.finish(terms, Some(lattice))
