@@ -28,7 +28,7 @@ fn the_truncation_bound_is_reached_at_the_centre_of_a_ghost() {
         let highest = [200, 200];
         let rectangle = vec![highest[1] + 1; highest[0] as usize + 1];
         let whole = reference::series(&ghosts, plan.period(), &rectangle, DVec2::ZERO)[0];
-        let cut = reference::series(&ghosts, plan.period(), &plan.counts(), DVec2::ZERO)[0];
+        let cut = reference::series(&ghosts, plan.period(), plan.counts(), DVec2::ZERO)[0];
         let ratio = (whole - cut) / plan.predicted.truncation;
         assert!((0.999..1.000_001).contains(&ratio), "{tolerance:e}: {ratio}");
     }
