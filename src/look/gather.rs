@@ -3,7 +3,7 @@
 use super::{Look, LookLights};
 use crate::choices::Mix;
 use crate::photo::Photo;
-use crate::scene::{self, Emission, Found, Ghost, Lens, Light};
+use crate::scene::{self, Emission, FindOptions, Found, Ghost, Lens, Light};
 
 /// What glares in one photo.
 pub struct Gathered {
@@ -17,11 +17,26 @@ pub struct Gathered {
     pub ghosts: Vec<Ghost>,
 }
 
+/// What a photo was searched by, and what was found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Search {
+    /// The rules.
+    pub options: FindOptions,
+    /// What there is by them.
+    pub found: Found,
+}
+
 impl Look {
     /// What glares in a photo. It is searched for lights where none are listed, and for the threshold where light is
     /// taken from it.
     pub fn gather(&self, photo: &Photo) -> Gathered {
-        self.gather_from(self.searches().then(|| self.find(photo)))
+        self.gather_knowing(photo, None)
+    }
+
+    /// The same for a photo that may have been searched already; by other rules than the look's it is searched again.
+    pub fn gather_knowing(&self, photo: &Photo, search: Option<Search>) -> Gathered {
+        let known = search.filter(|search| search.options == self.find).map(|search| search.found);
+        self.gather_from(self.searches().then(|| known.unwrap_or_else(|| self.find(photo))))
     }
 
     /// What glares in a photo of which `found` is known.

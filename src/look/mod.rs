@@ -13,7 +13,7 @@ use crate::choices::{Evaluator, Mix, Normalize};
 use crate::scene::presets::{self, DEFAULT_PRESET};
 use crate::scene::{FindOptions, Ghost, Goal, Lens, LensGhost, Light};
 
-pub use gather::Gathered;
+pub use gather::{Gathered, Search};
 
 /// Everything that a person sets. The same look gives the same glare, whatever it was made from.
 #[derive(Debug, Clone, PartialEq)]
