@@ -5,6 +5,7 @@ use glam::DVec2;
 use vglare::frame::Frame;
 use vglare::photo::{self, ToneMap, WriteOptions};
 use vglare::plan::{Evaluator, Request, plan};
+use vglare::problem::Problem;
 use vglare::reference;
 use vglare::scene::{FindOptions, Ghost, find};
 use vglare::series::Bell;
@@ -50,16 +51,17 @@ fn night([width, height]: [u32; 2]) -> Vec<[f32; 4]> {
 
 #[divan::bench(args = [10, 1000, 100_000], max_time = 2)]
 fn plan_of_ghosts(bencher: Bencher<'_, '_>, count: usize) {
-    let (ghosts, request) = (ghosts(count), Request::new(Frame::full(HD[0], HD[1]), 1e-3));
-    bencher.bench(|| plan(black_box(&ghosts), &request).unwrap());
+    let frame = Frame::full(HD[0], HD[1]);
+    let (problem, request) = (Problem::new(ghosts(count), frame), Request::new(1e-3));
+    bencher.bench(|| plan(black_box(&problem), &request).unwrap());
 }
 
 #[divan::bench(args = [1e-2, 1e-3, 1e-4], max_time = 2)]
 fn plan_of_a_grid(bencher: Bencher<'_, '_>, tolerance: f64) {
     let frame = Frame::full(HD[0], HD[1]);
-    let request = Request { evaluator: Some(Evaluator::Grid), ..Request::new(frame, tolerance) };
-    let ghosts = ghosts(100);
-    bencher.bench(|| plan(black_box(&ghosts), &request).unwrap());
+    let request = Request { evaluator: Some(Evaluator::Grid), ..Request::new(tolerance) };
+    let problem = Problem::new(ghosts(100), frame);
+    bencher.bench(|| plan(black_box(&problem), &request).unwrap());
 }
 
 #[divan::bench(max_time = 4)]

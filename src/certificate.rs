@@ -1,24 +1,25 @@
 //! The error of a field that was rendered, measured against the direct sum in f64, at sample pixels or at all of them.
 
+mod sample;
+
+use std::sync::Arc;
+
 use crate::compare::{Comparison, compare_in};
-use crate::frame::{Frame, Window};
+use crate::frame::Window;
 use crate::plan::Plan;
+use crate::problem::Problem;
 use crate::reference;
-use crate::renderer::Renderer;
-use crate::scene::Ghost;
+use crate::renderer::Field;
 use crate::{Error, Result};
 
-/// Pixels that a certificate looks at, at least and at most.
-const FEWEST: usize = 32;
-const MOST: usize = 384;
-/// Bells that it may evaluate in f64: many ghosts get fewer pixels.
-const EFFORT: usize = 20_000_000;
+pub(crate) use sample::sample_pixels;
 
 /// Pixels of which the direct sum is taken at once where all are: little memory, and enough for every core.
 const BATCH: usize = 1 << 14;
 
 /// Where a field is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[cfg_attr(feature = "terminal", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Verify {
     /// At some hundred pixels
@@ -48,31 +49,25 @@ pub struct Certificate {
 }
 
 impl Certificate {
-    /// Measures the renderer's field, which must be that of `ghosts` and `plan`.
+    /// Renders the plan's field, and measures it at sample pixels.
     ///
     /// # Errors
     /// [`Error::Gl`] where the driver refuses.
-    pub fn measure(renderer: &mut Renderer, ghosts: &[Ghost], plan: &Plan, frame: Frame, asked: f64) -> Result<Self> {
-        Ok(Samples::take(renderer, ghosts, plan, frame, asked)?.certify(ghosts))
+    pub fn measure(field: &mut Field, plan: &Plan) -> Result<Self> {
+        Ok(Samples::take(field, plan)?.certify())
     }
 
-    /// Measures the renderer's field, which must be that of `ghosts` and `plan`, at every pixel of the frame's window;
-    /// `advance` is told how many more are done.
+    /// Renders the plan's field, and measures it at every pixel of its window; `advance` is told how many more are done.
     ///
     /// # Errors
     /// [`Error::Gl`] where the driver refuses.
-    pub fn measure_all(
-        renderer: &mut Renderer,
-        ghosts: &[Ghost],
-        plan: &Plan,
-        frame: Frame,
-        asked: f64,
-        mut advance: impl FnMut(usize),
-    ) -> Result<Self> {
+    pub fn measure_all(field: &mut Field, plan: &Plan, mut advance: impl FnMut(usize)) -> Result<Self> {
+        let (ghosts, frame) = (plan.problem().ghosts(), plan.problem().frame());
+        field.set_scene(plan)?;
         let mut comparison = Comparison::in_units(plan.scale);
         // Where each tile's values begin among all of them.
         let mut tiles: Vec<(usize, Window)> = Vec::new();
-        renderer.field(frame, |tile, rendered| {
+        field.visit(frame, |tile, rendered| {
             tiles.push((comparison.count(), tile));
             for (batch, rendered) in rendered.chunks(BATCH).enumerate() {
                 let place = |k: usize| {
@@ -87,7 +82,7 @@ impl Certificate {
         let difference = comparison.difference();
         let worst = tiles.iter().rev().find(|(first, _)| *first <= difference.worst.0);
         Ok(Self {
-            asked,
+            asked: plan.tolerance,
             predicted: plan.predicted.total(),
             measured: difference.relative,
             verify: Verify::Full,
@@ -110,31 +105,40 @@ impl Certificate {
     }
 }
 
-/// A renderer's field at sample pixels, not yet held against the truth: that needs no device, and may be done elsewhere.
+/// A field's field at sample pixels, not yet held against the truth: that needs no device, and may be done elsewhere.
 pub(crate) struct Samples {
+    problem: Arc<Problem>,
     pixels: Vec<[i32; 2]>,
     rendered: Vec<[f64; 3]>,
-    frame: Frame,
     unit: [f64; 3],
     asked: f64,
     predicted: f64,
 }
 
 impl Samples {
-    /// Looks the field up, which must be that of `ghosts` and `plan`.
+    /// Renders the plan's field, and looks it up.
     ///
     /// # Errors
     /// [`Error::Gl`] where the driver refuses.
-    pub fn take(renderer: &mut Renderer, ghosts: &[Ghost], plan: &Plan, frame: Frame, asked: f64) -> Result<Self> {
-        let pixels = sample_pixels(ghosts, plan, frame);
-        let rendered = renderer.probe(frame, &pixels)?;
-        Ok(Self { pixels, rendered, frame, unit: plan.scale, asked, predicted: plan.predicted.total() })
+    pub fn take(field: &mut Field, plan: &Plan) -> Result<Self> {
+        let problem = plan.problem().clone();
+        let pixels = sample_pixels(plan);
+        field.set_scene(plan)?;
+        let rendered = field.probe(problem.frame(), &pixels)?;
+        Ok(Self {
+            problem,
+            pixels,
+            rendered,
+            unit: plan.scale,
+            asked: plan.tolerance,
+            predicted: plan.predicted.total(),
+        })
     }
 
     /// Holds them against the direct sum of the same ghosts.
-    pub fn certify(&self, ghosts: &[Ghost]) -> Certificate {
-        let points: Vec<_> =
-            self.pixels.iter().map(|&[i, j]| self.frame.position(f64::from(i), f64::from(j))).collect();
+    pub fn certify(&self) -> Certificate {
+        let (ghosts, frame) = (self.problem.ghosts(), self.problem.frame());
+        let points: Vec<_> = self.pixels.iter().map(|&[i, j]| frame.position(f64::from(i), f64::from(j))).collect();
         // In the plan's own unit where that is larger: light that cancels, or that does not reach the picture, is nothing.
         let difference = compare_in(&reference::direct_at(ghosts, &points), &self.rendered, self.unit);
         Certificate {
@@ -155,56 +159,9 @@ fn place(tile: Window, index: usize) -> [i32; 2] {
     [tile.x + column as i32, tile.y + row as i32]
 }
 
-/// Where to look: the corners and the middles of the borders, where the field was found largest, the ghosts' centres,
-/// and the rest spread evenly over the window.
-pub(crate) fn sample_pixels(ghosts: &[Ghost], plan: &Plan, frame: Frame) -> Vec<[i32; 2]> {
-    let window = frame.window;
-    let most = (EFFORT / ghosts.len().max(1)).clamp(FEWEST, MOST);
-    let (right, bottom) = (window.width as i32 - 1, window.height as i32 - 1);
-    let mut pixels: Vec<[i32; 2]> = [0, right / 2, right]
-        .iter()
-        .flat_map(|&i| [0, bottom / 2, bottom].map(|j| [window.x + i, window.y + j]))
-        .collect();
-    pixels.extend(&plan.peaks);
-    let stride = ghosts.len().div_ceil(most / 3).max(1);
-    let centers = ghosts.iter().step_by(stride).map(|ghost| frame.pixel(ghost.center));
-    let inside = centers
-        .map(|p| [p.x.round() as i32, p.y.round() as i32])
-        .filter(|&[i, j]| (window.x..=window.x + right).contains(&i) && (window.y..=window.y + bottom).contains(&j));
-    pixels.extend(inside);
-    pixels.truncate(2 * most / 3);
-    // The additive recurrence of the plastic number fills a square more evenly than chance does (Roberts, "The
-    // unreasonable effectiveness of quasirandom sequences", 2018).
-    const PLASTIC: f64 = 1.324_717_957_244_746;
-    let spread =
-        |index: usize, step: f64, last: i32| ((index as f64 * step + 0.5).fract() * f64::from(last + 1)) as i32;
-    pixels.extend((1..=most.saturating_sub(pixels.len())).map(|index| {
-        let (i, j) = (spread(index, 1.0 / PLASTIC, right), spread(index, PLASTIC.powi(-2), bottom));
-        [window.x + i.min(right), window.y + j.min(bottom)]
-    }));
-    pixels.sort_unstable();
-    pixels.dedup();
-    pixels
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::Window;
-    use crate::plan::{Request, plan};
-
-    #[test]
-    fn samples_lie_in_the_window_and_hold_its_corners() {
-        let window = Window { x: -5, y: 7, width: 33, height: 12 };
-        let frame = Frame::full(40, 30).with_window(window);
-        let plan = plan(&[], &Request::new(frame, 1e-3)).unwrap();
-        let pixels = sample_pixels(&[], &plan, frame);
-        assert!(pixels.iter().all(|&[i, j]| (-5..28).contains(&i) && (7..19).contains(&j)), "{pixels:?}");
-        for corner in [[-5, 7], [27, 7], [-5, 18], [27, 18]] {
-            assert!(pixels.contains(&corner), "{corner:?} of {pixels:?}");
-        }
-        assert!(pixels.len() >= FEWEST, "{}", pixels.len());
-    }
 
     #[test]
     fn what_misses_the_tolerance_is_an_error_and_so_is_nan() {

@@ -1,10 +1,10 @@
 //! What a person chooses by name, with the same names on the command line, in files and in reports.
 
-use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 
 /// How the field is computed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "terminal", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Evaluator {
     /// Sum the bells at every pixel.
@@ -34,7 +34,8 @@ impl std::fmt::Display for Evaluator {
 }
 
 /// How the field's values become glare.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "terminal", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Normalize {
     /// As they are: physical.
@@ -47,7 +48,8 @@ pub enum Normalize {
 }
 
 /// Where the glare's light comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "terminal", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Mix {
     /// From nowhere: the photo keeps its own

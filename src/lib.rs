@@ -14,50 +14,68 @@
 //! | [`scene`] | photo → lights → ghosts; presets and scene files |
 //! | [`look`] | everything that a person sets: from options, from a scene file, or by hand |
 //! | [`series`] | bells, their Fourier coefficients and their tails, in f64 |
-//! | [`plan`] | ghosts, picture, tolerance → period, degree, kept terms, evaluator, predicted error |
+//! | [`problem`] | ghosts and picture, as one thing that never changes |
+//! | [`plan`] | problem, tolerance → period, degree, kept terms, evaluator, predicted error |
 //! | [`gpu`] | the plan's tables and passes on OpenGL 4.3; the only folder with `unsafe` |
 //! | [`renderer`] | the main path: spectrum → field → normalise → composite |
 //! | [`mod@reference`] | the definition of the field in f64, by direct sum and by direct series |
 //! | [`compare`], [`certificate`] | the one error metric, and a rendered field held against the definition |
 //! | [`job`] | a look laid over a photo: find, plan, render, certify |
 //! | [`measure`] | arms timed in turns, and their ratios |
-//! | [`chart`] | numbers → charts and pictures in false colours |
-//! | [`rex`] | the research prototype's experiments, as figures and numbers |
-//! | [`tradeoff`] | a photo and its ghosts → accuracy against time, measured here |
-//! | [`viewer`] | the window: a photo with its glare, live |
-//! | [`cli`] | the commands |
 //!
 //! Beside them stand [`panics`], which makes errors of them, `limits`, which asks the system for room and threads before
 //! they are needed, and `printable`, by which no text of a file commands a terminal.
+//!
+//! That much is the core, which knows neither windows nor command lines. On top of it stand three rooms, each a feature
+//! of the crate, and none imports another; what two of them need stands below them.
+//!
+//! | module | feature | what it does |
+//! | --- | --- | --- |
+//! | `cli` | `cli` | the commands for photos |
+//! | `viewer` | `window` | the window: a photo with its glare, live |
+//! | `laboratory` | `laboratory` | experiments, charts, benches: what is measured and drawn instead of applied |
+//! | `false_colour` | `laboratory` or `window` | numbers → colours |
+//! | `options`, `terminal` | any of these | what commands share: options; printing, progress, signals |
+//!
+//! The program lists the commands of all three, in `src/program`.
 
 #![warn(clippy::print_stderr, clippy::print_stdout)]
+// What the core has for the rooms on top alone looks unused without them.
+#![cfg_attr(not(all(feature = "cli", feature = "laboratory", feature = "window")), allow(dead_code, unused_imports))]
 
 mod calibration;
 pub mod certificate;
 mod chance;
-pub mod chart;
 pub mod choices;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod compare;
 pub mod error;
+#[cfg(any(feature = "laboratory", feature = "window"))]
+pub mod false_colour;
 pub mod frame;
 pub mod gpu;
 pub mod job;
+#[cfg(feature = "laboratory")]
+pub mod laboratory;
 mod limits;
 pub mod look;
 pub mod measure;
-mod page;
+#[cfg(feature = "terminal")]
+pub mod options;
 pub mod panics;
 pub mod photo;
 pub mod plan;
 mod printable;
+pub mod problem;
 pub mod reference;
 pub mod renderer;
-pub mod rex;
 pub mod scene;
 pub mod series;
 mod target;
-pub mod tradeoff;
+#[cfg(feature = "terminal")]
+pub mod terminal;
+#[cfg(feature = "window")]
 pub mod viewer;
 
 pub use error::{Error, Result};

@@ -1,20 +1,20 @@
 //! The program: parse, run, say what went wrong.
 
-#![warn(clippy::print_stderr, clippy::print_stdout)]
+mod program;
 
 use std::process::ExitCode;
 
-use vglare::cli;
+use vglare::terminal;
 
 fn main() -> ExitCode {
-    let cli = match cli::parse() {
+    let cli = match program::parse() {
         Ok(cli) => cli,
         Err(code) => return ExitCode::from(code),
     };
-    match cli::run(cli) {
+    match program::run(cli) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            cli::tell(&error);
+            terminal::tell(&error);
             ExitCode::from(error.exit_code())
         }
     }

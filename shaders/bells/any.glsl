@@ -28,17 +28,25 @@
 #include "bells/profile.glsl"
 #undef bell_value
 
-// The kind, in the order of the registry, is in the highest 8 bits.
-float bell_value(vec2 offset, vec2 inverse_size, uint bell) {
+#ifdef DOUBLE
+#define real double
+#define reals dvec2
+#else
+#define real float
+#define reals vec2
+#endif
+
+// The kind, in the order of the registry, is in the highest 8 bits; the size as the bells take it.
+real bell_value(reals offset, reals size, uint bell) {
     uint shape = bell & 0xffffffu;
     switch (bell >> 24) {
-    case 0u: return gaussian(offset, inverse_size, shape);
-    case 1u: return cosine_squared(offset, inverse_size, shape);
-    case 2u: return parabola(offset, inverse_size, shape);
-    case 3u: return paraboloid(offset, inverse_size, shape);
-    case 4u: return von_mises(offset, inverse_size, shape);
-    case 5u: return sine_gaussian(offset, inverse_size, shape);
-    case 6u: return profile(offset, inverse_size, shape);
+    case 0u: return gaussian(offset, size, shape);
+    case 1u: return cosine_squared(offset, size, shape);
+    case 2u: return parabola(offset, size, shape);
+    case 3u: return paraboloid(offset, size, shape);
+    case 4u: return von_mises(offset, size, shape);
+    case 5u: return sine_gaussian(offset, size, shape);
+    case 6u: return profile(offset, size, shape);
     }
-    return 0.0;
+    return real(0.0);
 }

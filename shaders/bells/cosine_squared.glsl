@@ -10,6 +10,18 @@ float bell_coefficient(float n, float size) {
     return size * sinc / (s < 0.5 ? (1.0 - s) * (1.0 + s) : s * (1.0 + s));
 }
 
+#ifdef DOUBLE
+#include "shared/double.glsl"
+
+double bell_value(dvec2 offset, dvec2 size, uint shape) {
+    offset = abs(offset / size);
+    if (max(offset.x, offset.y) >= 1.0lf) {
+        return 0.0lf;
+    }
+    double cosines = sine_of_turns(0.25lf * (1.0lf - offset.x)) * sine_of_turns(0.25lf * (1.0lf - offset.y));
+    return cosines * cosines;
+}
+#else
 float bell_value(vec2 offset, vec2 inverse_size, uint shape) {
     offset = abs(offset * inverse_size);
     if (max(offset.x, offset.y) >= 1.0) {
@@ -18,3 +30,4 @@ float bell_value(vec2 offset, vec2 inverse_size, uint shape) {
     vec2 cosine = cos(1.57079632679 * offset);
     return cosine.x * cosine.x * cosine.y * cosine.y;
 }
+#endif

@@ -9,8 +9,18 @@ float bell_coefficient(float n, float size) {
     return SQRT_TWO_PI * size * exp(-TWO_PI_SQUARED * turn * turn);
 }
 
-// The bell at an offset from its centre; `shape` is the first of its rows in `shapes`, where it has any.
+// The bell at an offset from its centre; `shape` is the first of its rows in `shapes`, where it has any. In 64-bit floats it
+// takes the size as it is, as the reference does.
+#ifdef DOUBLE
+#include "shared/double.glsl"
+
+double bell_value(dvec2 offset, dvec2 size, uint shape) {
+    offset /= size;
+    return exponential(-0.5lf * dot(offset, offset));
+}
+#else
 float bell_value(vec2 offset, vec2 inverse_size, uint shape) {
     offset *= inverse_size;
     return exp(-0.5 * dot(offset, offset));
 }
+#endif

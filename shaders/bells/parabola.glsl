@@ -17,8 +17,16 @@ float bell_coefficient(float n, float size) {
     return 4.0 / 3.0 * size * phi(6.28318530718 * n * size);
 }
 
+#ifdef DOUBLE
+double bell_value(dvec2 offset, dvec2 size, uint shape) {
+    offset /= size;
+    dvec2 factor = max(1.0lf - offset * offset, 0.0lf);
+    return factor.x * factor.y;
+}
+#else
 float bell_value(vec2 offset, vec2 inverse_size, uint shape) {
     offset *= inverse_size;
     vec2 factor = max(1.0 - offset * offset, 0.0);
     return factor.x * factor.y;
 }
+#endif

@@ -3,7 +3,7 @@
 #include SERIES
 #undef glare
 #define glare direct_glare
-#include "evaluators/direct.glsl"
+#include DIRECT
 #undef glare
 
 vec3 glare(ivec2 pixel) {

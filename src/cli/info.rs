@@ -6,10 +6,10 @@ use std::rc::Rc;
 use comfy_table::{CellAlignment, Table, presets};
 use serde::Serialize;
 
-use super::stdout;
 use crate::Result;
 use crate::gpu::precision::{self, Precision};
 use crate::gpu::{Backend, Device, Info};
+use crate::terminal::stdout;
 
 /// Show the renderer, its limits, and which backends work
 ///

@@ -7,15 +7,14 @@ use comfy_table::{CellAlignment, Table, presets};
 use serde::Serialize;
 
 use super::found::{self, short};
-use super::numbers::{factor, not_negative};
-use super::reading::ReadArgs;
-use super::stderr::warn;
-use super::stdout;
 use crate::Result;
 use crate::frame::Frame;
+use crate::options::{FindArgs, ReadArgs};
 use crate::photo;
 use crate::scene::threshold::Rule;
 use crate::scene::{Emission, FindOptions, Found, Light, find};
+use crate::terminal::stderr::warn;
+use crate::terminal::stdout;
 
 /// Find the lights in a photo
 ///
@@ -44,42 +43,6 @@ Examples:
   vglare lights night.exr                         What glares in this photo?
   vglare lights night.exr --threshold 50          Only what is brighter than 50
   vglare lights night.exr --json > lights.json    To be edited and used again";
-
-/// What counts as a light in a photo.
-#[derive(Debug, Clone, clap::Args)]
-#[command(next_help_heading = "Lights in the photo")]
-pub struct FindArgs {
-    /// Pixels of this luminance or more are light: scene-linear, in the photo's unit, 0 or more. By default the value
-    /// that splits the photo's flux best into light and scene, at least 4 times its mean luminance
-    #[arg(long, value_name = "L", value_parser = not_negative)]
-    threshold: Option<f64>,
-
-    /// Regions that are this close to a brighter one join it, in half picture heights; 0 merges none
-    /// [default: 0.02]
-    #[arg(long, value_name = "R", value_parser = not_negative)]
-    merge: Option<f64>,
-
-    /// At most so many lights, the brightest [default: 64]
-    #[arg(long, value_name = "N")]
-    max_lights: Option<usize>,
-
-    /// A single pixel that is more than so many times as bright as each of its neighbours is a firefly or a hot pixel,
-    /// and no light; 0 takes it as it is [default: 1000]
-    #[arg(long, value_name = "F", value_parser = factor)]
-    firefly_limit: Option<f64>,
-}
-
-impl FindArgs {
-    /// What is given wins over what was set before.
-    pub fn over(&self, set: FindOptions) -> FindOptions {
-        FindOptions {
-            threshold: self.threshold.or(set.threshold),
-            merge: self.merge.unwrap_or(set.merge),
-            max_lights: self.max_lights.unwrap_or(set.max_lights),
-            firefly_limit: self.firefly_limit.unwrap_or(set.firefly_limit),
-        }
-    }
-}
 
 /// Reads the photo, finds its lights and prints them.
 ///

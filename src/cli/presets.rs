@@ -5,10 +5,10 @@ use std::io::{self, Write};
 use comfy_table::{CellAlignment, Table, presets as styles};
 use serde::Serialize;
 
-use super::stdout;
 use crate::Result;
 use crate::scene::Lens;
 use crate::scene::presets::{self, DEFAULT_PRESET};
+use crate::terminal::stdout;
 
 /// List the lenses that come with vglare, or print one of them
 ///

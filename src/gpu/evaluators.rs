@@ -1,12 +1,11 @@
 //! The four ways to the field. Each readies what its GLSL function `glare(pixel)` reads for one tile of the picture;
 //! `field`, `composite` and `probe` then include that function.
 
-use bytemuck::Zeroable as _;
+use bytemuck::Pod;
 
 use super::harmonics::Harmonics;
 use super::layout::{
-    CELLS, DIRECT, DirectGhost, EVALUATOR, FEW_GHOSTS, GHOSTS, HARMONICS_X, HARMONICS_Y, Knots, LATTICE, PROFILES,
-    SHAPES, STRIPS,
+    CELLS, DIRECT, EVALUATOR, FEW_GHOSTS, GHOSTS, HARMONICS_X, HARMONICS_Y, Knots, LATTICE, PROFILES, SHAPES, STRIPS,
 };
 use super::resource::{Buffer, Scratch, Texel};
 use super::runner::Runner;
@@ -16,9 +15,11 @@ use crate::{Error, Result};
 
 /// Where there are many ghosts, `direct` sums this many of them in a round of its loop; as in `evaluators/direct.glsl`.
 const STEP: usize = 8;
-/// Ghosts that fit a uniform block, and what such a block must hold for them; as in `evaluators/direct.glsl`.
-const FEW: usize = 2048;
-const FEW_BYTES: u32 = (FEW * size_of::<DirectGhost>()) as u32;
+/// What a uniform block must hold for the ghosts that fit one; as in `evaluators/direct.glsl`.
+const FEW_BYTES: u32 = 64 << 10;
+
+/// What ghosts and parameters of bells are made of, in whichever floats.
+type Words = [u32; 4];
 
 /// A lattice over one tile, and where the tile's pixels lie on it.
 pub(crate) struct LatticeTile<'a> {
@@ -41,9 +42,9 @@ pub(crate) struct Evaluators {
     cells: Scratch,
     strips: Scratch,
     knots: Buffer<Knots>,
-    ghosts: Buffer<DirectGhost>,
-    shapes: Buffer<[f32; 4]>,
-    direct: Buffer<[i32; 8]>,
+    ghosts: Buffer<Words>,
+    shapes: Buffer<Words>,
+    direct: Buffer<[i32; 12]>,
     ghost_count: usize,
     many: bool,
 }
@@ -60,7 +61,7 @@ impl Evaluators {
             strips: Scratch::default(),
             knots: Buffer::new(device, 2)?,
             // A uniform block's buffer has to be as long as the block.
-            ghosts: Buffer::new(device, FEW)?,
+            ghosts: Buffer::new(device, FEW_BYTES as usize / size_of::<Words>())?,
             shapes: Buffer::new(device, 0)?,
             direct: Buffer::new(device, 1)?,
             ghost_count: 0,
@@ -68,21 +69,22 @@ impl Evaluators {
         })
     }
 
-    /// Uploads the ghosts that `direct` sums, and what their bells need to know beside.
+    /// Uploads the ghosts that `direct` sums, and what their bells need to know beside: in 32-bit floats or in 64.
     ///
     /// # Errors
     /// [`Error::Gl`] where they are more than the software renderer goes through for one pixel.
-    pub fn set_ghosts(&mut self, runner: &Runner, ghosts: &[DirectGhost], shapes: &[[f32; 4]]) -> Result<()> {
-        self.many = ghosts.len() > FEW || runner.device().info().limits.uniform_block < FEW_BYTES;
+    pub fn set_ghosts<G: Pod, S: Pod>(&mut self, runner: &Runner, ghosts: &[G], shapes: &[S]) -> Result<()> {
+        let few = FEW_BYTES as usize / size_of::<G>();
+        self.many = ghosts.len() > few || runner.device().info().limits.uniform_block < FEW_BYTES;
         // Ghosts without weight fill the last round.
         let step = if self.many { STEP } else { 1 };
         let mut padded = ghosts.to_vec();
-        padded.resize(ghosts.len().next_multiple_of(step), DirectGhost::zeroed());
+        padded.resize(ghosts.len().next_multiple_of(step), G::zeroed());
         let rounds = padded.len() / step + padded.len().div_ceil(64);
         within_rounds(runner, rounds, "direct", ghosts.len(), "ghosts")?;
         self.ghost_count = padded.len();
-        self.shapes.store(shapes)?;
-        self.ghosts.store(&padded)
+        self.shapes.store(bytemuck::cast_slice(shapes))?;
+        self.ghosts.store(bytemuck::cast_slice(&padded))
     }
 
     /// Readies `direct` for a tile whose first pixel is `corner` in the picture of a frame.
@@ -90,7 +92,9 @@ impl Evaluators {
         let size = [frame.width as i32, frame.height as i32];
         let [x, y] = (0.5 * frame.pixel_sides()).to_array().map(|half| (half as f32).to_bits() as i32);
         let count = self.ghost_count as i32;
-        self.direct.store(&[[corner[0], corner[1], size[0], size[1], count, 0, x, y]])?;
+        let aspect = frame.pixel_aspect.to_bits();
+        let [low, high] = [aspect as u32 as i32, (aspect >> 32) as i32];
+        self.direct.store(&[[corner[0], corner[1], size[0], size[1], count, 0, x, y, low, high, 0, 0]])?;
         self.direct.bind_uniform(DIRECT);
         if self.many {
             self.ghosts.bind_storage(GHOSTS);

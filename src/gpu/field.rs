@@ -10,25 +10,35 @@ use crate::Result;
 pub(crate) struct Source {
     /// Its file in `shaders/`.
     pub evaluator: &'static str,
-    /// The file of the series where the function is the sum of one and of bells.
-    pub series: Option<&'static str>,
+    /// The files of the series and of the direct sum where the function is the sum of both.
+    pub parts: Option<[&'static str; 2]>,
     /// The file of the bell, or of all bells, that it includes, if any.
     pub bell: Option<&'static str>,
     /// Whether there are more ghosts than fit a uniform block.
     pub many_ghosts: bool,
+    /// Whether the bells are computed in 64-bit floats.
+    pub double: bool,
 }
 
 impl Source {
     /// The field that [`FieldPass::draw`] drew last, which [`FieldPass::bind`] binds.
-    pub const HELD: Self = Self { evaluator: "\"evaluators/held.glsl\"", series: None, bell: None, many_ghosts: false };
+    pub const HELD: Self = Self::of("\"evaluators/held.glsl\"");
+
+    /// The function in a file that is one by itself.
+    pub const fn of(evaluator: &'static str) -> Self {
+        Self { evaluator, parts: None, bell: None, many_ghosts: false, double: false }
+    }
 
     /// What a shader is specialised with to include this function.
     pub fn defines(self) -> Vec<(&'static str, &'static str)> {
         let mut defines = vec![("EVALUATOR", self.evaluator)];
-        defines.extend(self.series.map(|series| ("SERIES", series)));
+        defines.extend(self.parts.into_iter().flat_map(|[series, direct]| [("SERIES", series), ("DIRECT", direct)]));
         defines.extend(self.bell.map(|bell| ("BELL", bell)));
         if self.many_ghosts {
             defines.push(("MANY_GHOSTS", "1"));
+        }
+        if self.double {
+            defines.push(("DOUBLE", "1"));
         }
         defines
     }

@@ -122,7 +122,7 @@ impl Graf {
         texture.bind(FOLDED);
         self.evaluator.store(&[[window.x as u32, window.y as u32, width, height], [x.0, y.0, 0, 0]])?;
         self.evaluator.bind_uniform(EVALUATOR);
-        Ok(Source { evaluator: "\"evaluators/graf.glsl\"", series: None, bell: None, many_ghosts: false })
+        Ok(Source::of("\"evaluators/graf.glsl\""))
     }
 
     fn set_places(&mut self, runner: &Runner, zeros: u32, places: &[Place]) -> Result<()> {

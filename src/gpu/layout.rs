@@ -117,6 +117,21 @@ pub(crate) struct DirectGhost {
 }
 const _: () = assert!(size_of::<DirectGhost>() == 32);
 
+/// One ghost as the direct sum in 64-bit floats reads it.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct DoubleGhost {
+    /// Centre on the picture plane.
+    pub center: [f64; 2],
+    pub size: [f64; 2],
+    /// Radiance, per colour in units of the field's scale.
+    pub weight: [f64; 3],
+    /// As that of a [`DirectGhost`].
+    pub bell: u32,
+    pub pad: u32,
+}
+const _: () = assert!(size_of::<DoubleGhost>() == 64);
+
 /// Where the pixels along one axis lie between the lattice's nodes: pixel i at `start + i * pitch`, counted in 2⁻²⁰ of a
 /// node from the second node that the tile has.
 ///

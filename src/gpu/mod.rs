@@ -29,6 +29,7 @@ mod harmonics;
 pub(crate) mod layout;
 pub(crate) mod lines;
 pub(crate) mod mask;
+#[cfg(feature = "window")]
 pub(crate) mod paint;
 pub(crate) mod pixels;
 pub mod precision;
@@ -42,6 +43,7 @@ pub(crate) mod spectrum;
 mod timer;
 pub(crate) mod view;
 
+#[cfg(feature = "window")]
 pub use context::window::{Display, Surface, event_loop};
 pub use context::{Backend, Device, Info, Limits, be_sparing};
 pub use screen::{Region, Screen};

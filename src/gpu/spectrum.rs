@@ -76,16 +76,7 @@ impl Spectrum {
 
     /// Fills the tables. `counts[n]` says how many harmonics in y are kept beside harmonic n in x.
     pub fn compute(&mut self, runner: &Runner, counts: &[u32], groups: &[SpectrumGroup<'_>]) -> Result<()> {
-        let mut offsets = vec![0];
-        offsets.extend(counts.iter().scan(0, |end, count| {
-            *end += count;
-            Some(*end)
-        }));
-        let terms = *offsets.last().expect("begins with one") as usize;
-        self.degree = [counts.len().max(1) as u32 - 1, counts.iter().max().map_or(0, |most| most.max(&1) - 1)];
-        self.term_count = terms;
-        offsets.insert(0, counts.len() as u32);
-        self.offsets.store(&offsets)?;
+        let terms = self.begin(counts)?;
         self.terms.store(&vec![[0.0; 4]; 3 * terms])?;
         for group in groups {
             match group.ghosts {
@@ -102,6 +93,28 @@ impl Spectrum {
             }
         }
         Ok(())
+    }
+
+    /// Takes terms that were computed elsewhere, three a mode: A, B, C, D of red, green and blue, harmonic by harmonic of x.
+    pub fn upload(&mut self, counts: &[u32], terms: &[[f32; 4]]) -> Result<()> {
+        let count = self.begin(counts)?;
+        assert_eq!(terms.len(), 3 * count, "three for each kept mode");
+        self.terms.store(terms)
+    }
+
+    /// Says which modes are kept, and how many they are.
+    fn begin(&mut self, counts: &[u32]) -> Result<usize> {
+        let mut offsets = vec![0];
+        offsets.extend(counts.iter().scan(0, |end, count| {
+            *end += count;
+            Some(*end)
+        }));
+        let terms = *offsets.last().expect("begins with one") as usize;
+        self.degree = [counts.len().max(1) as u32 - 1, counts.iter().max().map_or(0, |most| most.max(&1) - 1)];
+        self.term_count = terms;
+        offsets.insert(0, counts.len() as u32);
+        self.offsets.store(&offsets)?;
+        Ok(terms)
     }
 
     /// How many slices' sums there is room for.

@@ -10,7 +10,7 @@ use super::composite::Composite;
 use super::context::{Backend, Device};
 use super::harmonics::Harmonics;
 use super::layout::{
-    Binding, DirectGhost, EVALUATOR, FEW_GHOSTS, GHOSTS, HARMONICS_X, Knots, PARTIALS, PASS, SpectralGhost,
+    Binding, DirectGhost, DoubleGhost, EVALUATOR, FEW_GHOSTS, GHOSTS, HARMONICS_X, Knots, PARTIALS, PASS, SpectralGhost,
 };
 use super::resource::Buffer;
 use super::runner::Runner;
@@ -152,6 +152,33 @@ fn shaders_read_direct_ghosts_as_they_are_written() {
         let expected = [a.clone(), b.clone()].concat();
         assert_eq!(ghosts("evaluators/direct.glsl", fields).echo(device, &[first, second]), expected);
         assert_eq!(few_ghosts("evaluators/direct.glsl", fields).echo(device, &few), expected);
+    });
+}
+
+#[test]
+fn shaders_read_ghosts_of_64_bits_as_they_are_written() {
+    let words = |values: &[f64]| -> Vec<u32> {
+        values.iter().flat_map(|value| [value.to_bits() as u32, (value.to_bits() >> 32) as u32]).collect()
+    };
+    let ghost = |k: u8| {
+        let at = |index: u8| f64::from(10 * k + index) + 1e-9;
+        let (center, size, weight) = ([at(0), at(1)], [at(2), at(3)], [at(4), at(5), at(6)]);
+        let bell = 0x0300_0005 + u32::from(k);
+        let expected = [words(&center), words(&size), words(&weight), vec![bell]].concat();
+        (DoubleGhost { center, size, weight, bell, pad: 0 }, expected)
+    };
+    let ([first, second], [a, b]) = ([ghost(0).0, ghost(1).0], [ghost(0).1, ghost(1).1]);
+    let fields = |ghost: &str| {
+        let halves = |name: &str| ["x", "y"].map(|half| format!("unpackDouble2x32({ghost}.{name}).{half}"));
+        let names = ["center.x", "center.y", "size.x", "size.y", "red", "green", "blue"];
+        [names.map(halves).concat(), vec![format!("{ghost}.bell")]].concat()
+    };
+    let few: Vec<DoubleGhost> = [first, second].into_iter().chain([DoubleGhost::zeroed(); 1022]).collect();
+    let path = "evaluators/direct_double.glsl";
+    on_each_backend(|device| {
+        let expected = [a.clone(), b.clone()].concat();
+        assert_eq!(ghosts(path, fields).echo(device, &[first, second]), expected);
+        assert_eq!(few_ghosts(path, fields).echo(device, &few), expected);
     });
 }
 

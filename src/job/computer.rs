@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::Known;
 use crate::Result;
 use crate::gpu::{Device, Info};
-use crate::renderer::Renderer;
+use crate::renderer::Picture;
 
 /// A device, what is known of its speed, and what renders on it: made once for however many photos.
 pub struct Computer {
@@ -14,7 +14,7 @@ pub struct Computer {
     pub(super) info: Arc<Info>,
     /// Its warning is told with the first photo and gone then: what is wrong with a machine is no photo's fault.
     pub(super) known: Known,
-    renderer: Option<Renderer>,
+    renderer: Option<Picture>,
 }
 
 impl Computer {
@@ -31,10 +31,10 @@ impl Computer {
     }
 
     /// What renders, made if need be.
-    pub(super) fn renderer(&mut self) -> Result<&mut Renderer> {
+    pub(super) fn renderer(&mut self) -> Result<&mut Picture> {
         Ok(match &mut self.renderer {
             Some(renderer) => renderer,
-            none => none.insert(Renderer::new(&self.device)?),
+            none => none.insert(Picture::new(&self.device)?),
         })
     }
 }

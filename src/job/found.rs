@@ -6,6 +6,7 @@ use super::{Computer, Done, Planned, Stages, Step, Wanted, Watch, bright_light, 
 use crate::Result;
 use crate::look::{Gathered, Look, Search};
 use crate::photo::{self, BadPixels, Facts, Photo};
+use crate::problem::Problem;
 use crate::renderer::Settings;
 
 /// A photo in which it is known what glares.
@@ -70,14 +71,15 @@ impl<'a> Found<'a> {
     /// Plans how the glare is computed.
     ///
     /// # Errors
-    /// Where there is no plan; [`crate::Error::Cancelled`].
+    /// Where there is no plan, or its glare is beyond what 32-bit floats hold; [`crate::Error::Cancelled`].
     pub fn plan(mut self, computer: &mut Computer, watch: &impl Watch) -> Result<Planned<'a>> {
         watch.begin(Step::Planning)?;
-        let (accuracy, ghosts, frame) = (&self.look.accuracy, &self.scene.ghosts, self.photo.frame);
-        let planning =
-            self.stages.time("plan", || plan(accuracy, ghosts, frame, Some(&computer.info), computer.known.clone()))?;
+        let problem = Problem::new(self.scene.ghosts.clone(), self.photo.frame);
+        let (accuracy, known) = (&self.look.accuracy, computer.known.clone());
+        let planning = self.stages.time("plan", || plan(accuracy, &problem, Some(&computer.info), known))?;
         computer.known.warning = None;
         self.warnings.extend(planning.warnings.iter().cloned());
+        self.settings.check(planning.plan.scale)?;
         self.warnings.extend(self.absurd(&planning.plan));
         Ok(Planned { found: self, planning, info: computer.info.clone() })
     }

@@ -76,4 +76,15 @@ impl Stages {
         self.0.push((name, started.elapsed().as_secs_f64() * 1e3));
         result
     }
+
+    /// Lets one stage have some of the milliseconds of another.
+    fn shift(&mut self, from: &str, to: &str, milliseconds: f64) {
+        for (stage, wall) in &mut self.0 {
+            match stage {
+                stage if *stage == from => *wall = (*wall - milliseconds).max(0.0),
+                stage if *stage == to => *wall += milliseconds,
+                _ => {}
+            }
+        }
+    }
 }

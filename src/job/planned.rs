@@ -4,13 +4,10 @@ use std::sync::Arc;
 
 use super::{Computed, Computer, Done, Found, Planning, Stages, Step, Wanted, Watch};
 use crate::certificate::{Certificate, Verify};
-use crate::frame::Frame;
 use crate::gpu::{Info, PassTime};
-use crate::look::Gathered;
 use crate::photo::{self, Photo};
 use crate::plan::Plan;
-use crate::renderer::{Pending, Renderer, Settings};
-use crate::scene::Ghost;
+use crate::renderer::{Pending, Picture, Settings};
 use crate::{Error, Result};
 
 /// A photo for which there is a plan.
@@ -44,13 +41,12 @@ impl<'a> Planned<'a> {
         let before = if bad.nan + bad.infinite > 0 { photo::not_finite(&photo.pixels) } else { 0 };
         watch.begin(Step::Computing)?;
         let renderer = computer.renderer()?;
-        renderer.set_timing(wanted.times);
-        let drawn = draw(renderer, photo, &scene, &planning.plan, &settings, wanted, &mut stages);
-        renderer.set_timing(false);
+        renderer.field.set_timing(wanted.times);
+        let drawn = draw(renderer, photo, &planning.plan, &settings, wanted, &mut stages);
+        renderer.field.set_timing(false);
         let Drawn { picture, glare, passes, measured_ms } = drawn?;
 
-        let ghosts = &scene.ghosts;
-        let certificate = certify(renderer, ghosts, &planning.plan, facts.frame, wanted.verify, &mut stages, watch)?;
+        let certificate = certify(renderer, &planning.plan, wanted.verify, &mut stages, watch)?;
         if let Err(error) = certificate.check() {
             warnings.push(error.to_string());
         }
@@ -69,23 +65,25 @@ impl<'a> Planned<'a> {
 
 /// Draws what is wanted. The picture takes over the photo's memory, unless someone else holds it.
 fn draw(
-    renderer: &mut Renderer,
+    renderer: &mut Picture,
     photo: Arc<Photo>,
-    scene: &Gathered,
     plan: &Plan,
     settings: &Settings,
     wanted: Wanted,
     stages: &mut Stages,
 ) -> Result<Drawn> {
     let frame = photo.frame;
-    stages.time("spectrum", || renderer.set_scene(&scene.ghosts, plan))?;
-    let mut passes = renderer.take_times();
-    let spectrum = milliseconds(&passes);
+    stages.time("spectrum", || renderer.field.set_scene(plan))?;
+    // What the plan has computed of the spectrum is the spectrum's.
+    let computed = plan.spectrum_milliseconds();
+    stages.shift("plan", "spectrum", computed);
+    let mut passes = renderer.field.take_times();
+    let spectrum = computed + milliseconds(&passes);
     let glare = match wanted.glare {
         true => Some(photo.companion(stages.time("glare", || renderer.glare(frame, settings))?)),
         false => None,
     };
-    let mut times = renderer.take_times();
+    let mut times = renderer.field.take_times();
     let mut picture = None;
     if wanted.picture {
         passes.append(&mut times);
@@ -98,7 +96,7 @@ fn draw(
             renderer.submit(frame, &mut photo.pixels, settings)
         })?;
         picture = Some((photo, pending));
-        times = renderer.take_times();
+        times = renderer.field.take_times();
     }
     let measured_ms = wanted.times.then(|| spectrum + milliseconds(&times));
     passes.extend(times);
@@ -107,22 +105,18 @@ fn draw(
 
 /// Holds the field against the direct sum.
 fn certify(
-    renderer: &mut Renderer,
-    ghosts: &[Ghost],
+    renderer: &mut Picture,
     plan: &Plan,
-    frame: Frame,
     verify: Verify,
     stages: &mut Stages,
     watch: &impl Watch,
 ) -> Result<Certificate> {
-    // Of a budget or a raised floor, what was reached; otherwise what was asked.
-    let asked = plan.tolerance;
     watch.begin(Step::Measuring)?;
     stages.time("certify", || match verify {
-        Verify::Sample => Certificate::measure(renderer, ghosts, plan, frame, asked),
+        Verify::Sample => Certificate::measure(&mut renderer.field, plan),
         Verify::Full => {
-            watch.measured(frame.window.pixels());
-            Certificate::measure_all(renderer, ghosts, plan, frame, asked, |pixels| watch.advance(pixels))
+            watch.measured(plan.problem().frame().window.pixels());
+            Certificate::measure_all(&mut renderer.field, plan, |pixels| watch.advance(pixels))
         }
     })
 }

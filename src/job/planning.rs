@@ -1,14 +1,15 @@
 //! The plan that a look asks for, and what it rests on.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use crate::Result;
 use crate::calibration::Known;
-use crate::frame::Frame;
 use crate::gpu::Info;
 use crate::look::Accuracy;
 use crate::plan::{self, CostModel, Plan, Request};
-use crate::scene::{Ghost, Goal};
+use crate::problem::Problem;
+use crate::scene::Goal;
 
 /// A plan, and what it rests on.
 pub struct Planning {
@@ -23,24 +24,18 @@ pub struct Planning {
     pub warnings: Vec<String>,
 }
 
-/// The plan for ghosts on a device, or, without one, on a device without limits; by what is known of its speed.
+/// The plan for a problem on a device, or, without one, on a device without limits; by what is known of its speed.
 ///
 /// # Errors
 /// Those of [`plan::plan`], [`plan::plan_at_least`] and [`plan::plan_within`].
-pub fn plan(
-    accuracy: &Accuracy,
-    ghosts: &[Ghost],
-    frame: Frame,
-    device: Option<&Info>,
-    known: Known,
-) -> Result<Planning> {
+pub fn plan(accuracy: &Accuracy, problem: &Arc<Problem>, device: Option<&Info>, known: Known) -> Result<Planning> {
     let &Accuracy { goal, allow_floor, degree, period, evaluator } = accuracy;
     // A budget is bought from the loosest tolerance on, whatever the request says.
     let asked = match goal {
         Goal::Tolerance(tolerance) => tolerance,
         Goal::Budget(_) => plan::LOOSEST,
     };
-    let unlimited = Request::new(frame, asked);
+    let unlimited = Request::new(asked);
     let request = Request {
         period,
         degree,
@@ -52,10 +47,10 @@ pub fn plan(
         ..unlimited
     };
     let (plan, note) = match goal {
-        Goal::Budget(budget) => (plan::plan_within(ghosts, &request, budget)?, None),
+        Goal::Budget(budget) => (plan::plan_within(problem, &request, budget)?, None),
         Goal::Tolerance(_) if allow_floor => {
-            let plan = plan::plan_at_least(ghosts, &request)?;
-            let (floor, by) = (plan.tolerance, plan.evaluator);
+            let plan = plan::plan_at_least(problem, &request)?;
+            let (floor, by) = (plan.tolerance, plan.evaluator());
             let note = (floor > asked).then(|| {
                 format!(
                     "the tolerance is {floor:.1e} instead of {asked:.1e}: what 32-bit floats can give here, by {by}"
@@ -63,7 +58,7 @@ pub fn plan(
             });
             (plan, note)
         }
-        Goal::Tolerance(_) => (plan::plan(ghosts, &request)?, None),
+        Goal::Tolerance(_) => (plan::plan(problem, &request)?, None),
     };
     let Known { model, file, warning } = known;
     Ok(Planning {

@@ -1,5 +1,7 @@
 //! What glares in a photo, as a look has it.
 
+use std::sync::Arc;
+
 use super::{Look, LookLights};
 use crate::choices::Mix;
 use crate::photo::Photo;
@@ -14,7 +16,7 @@ pub struct Gathered {
     /// The lens, if there are lights.
     pub lens: Option<Lens>,
     /// Ghosts of the lights, then those that no light makes.
-    pub ghosts: Vec<Ghost>,
+    pub ghosts: Arc<[Ghost]>,
 }
 
 /// What a photo was searched by, and what was found.
@@ -43,7 +45,7 @@ impl Look {
     pub fn gather_from(&self, found: Option<Found>) -> Gathered {
         let lights = self.lights(found.as_ref().map_or(&[], |found| &found.lights)).into_owned();
         let lens = (!lights.is_empty()).then(|| self.lens());
-        Gathered { ghosts: self.ghosts(&lights), found, lights, lens }
+        Gathered { ghosts: self.ghosts(&lights).into(), found, lights, lens }
     }
 
     /// Whether a photo is to be searched: for lights, or for the threshold that tells them from the rest.

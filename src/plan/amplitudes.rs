@@ -4,18 +4,24 @@
 //! where it is cheap, the plan looks.
 
 use std::f64::consts::TAU;
+use std::time::Instant;
 
 use glam::DVec2;
 use rayon::prelude::*;
 
 use super::Group;
+use super::modes::{Mode, Modes};
+use super::rounding::Strength;
+use super::weigh::weight;
 use crate::scene::Ghost;
-use crate::series::{Factor, Modes, kappa};
+use crate::series::{Factor, Modes as Bells, kappa};
 
 /// Ghosts times modes that are looked at, at most: some ten milliseconds, and less than a dispatch over them would take.
 const EFFORT: usize = 8_000_000;
 /// Ghosts that one task goes through. Tasks are joined in their order, whatever the number of cores.
 const CHUNK: usize = 128;
+/// More modes than this are not kept track of: a series of so many takes seconds at any size of picture.
+const MOST_MODES: usize = 1 << 18;
 
 /// Whether so many ghosts could be looked at in a series of a few modes.
 pub(super) fn worth_a_try(groups: &[Group]) -> bool {
@@ -30,10 +36,9 @@ fn members(groups: &[Group]) -> usize {
 /// Red, green, blue; or their bounds.
 pub(super) type Rgb = [f64; 3];
 
-/// For every mode an upper bound of what it adds at any point, relative to the field's largest value.
+/// Every mode of the field, and an upper bound of what it adds at any point, relative to the field's largest value.
 pub(super) struct Amplitudes {
-    /// How many harmonics of y there are beside each of x, never growing.
-    counts: Vec<u32>,
+    modes: Modes,
     /// Harmonic by harmonic of x.
     values: Vec<Rgb>,
 }
@@ -48,33 +53,38 @@ impl Amplitudes {
     /// κ/2 Re(Z₊ e^{i(nωx + mωy)} + Z₋ e^{i(nωx − mωy)})    Z± = Σ_k w_k u_n e^{−2πinφ} (v_m e^{−2πimψ})^(*)
     /// ```
     ///
-    /// and at most κ/2 (|Z₊| + |Z₋|). For a radial bell the transform stands before the sum instead.
+    /// and at most κ/2 (|Z₊| + |Z₋|). For a radial bell the transform stands in the place of u_n v_m.
     pub fn new(ghosts: &[Ghost], groups: &[Group], counts: &[u32], period: DVec2, scale: Rgb) -> Option<Self> {
         let modes: usize = counts.iter().map(|&count| count as usize).sum();
-        if modes.saturating_mul(members(groups)) > EFFORT {
+        if modes > MOST_MODES || modes.saturating_mul(members(groups)) > EFFORT {
             return None;
         }
-        let view = View { ghosts, counts, period, scale };
-        let mut products = Sums::zero(modes);
-        let mut all = vec![[0.0; 3]; modes];
-        for group in groups {
-            match group.bell.shape().modes() {
-                Modes::Product(factor) => products.add(&view.sums(group, Some(factor))),
-                // Ghosts of a bell that brings a table have one size.
-                modes @ Modes::Radial(_) => {
-                    let table = modes.table(counts, group.smallest / period);
-                    let sums = view.sums(group, None);
-                    for ((all, value), coefficient) in all.iter_mut().zip(sums.amplitudes()).zip(table) {
-                        *all = add(*all, value.map(|value| value * coefficient[0].abs()));
-                    }
-                }
-            }
-        }
+        let started = Instant::now();
+        let sums = View { ghosts, counts, period, scale }.sums(groups);
         let kappas = (0..).zip(counts).flat_map(|(n, &count)| (0..count).map(move |m| kappa(n, m)));
-        for ((all, value), kappa) in all.iter_mut().zip(products.amplitudes()).zip(kappas) {
-            *all = add(*all, value.map(|value| kappa * value));
+        let (terms, values) = sums.0.iter().zip(kappas).map(|(sums, kappa)| mode(sums, kappa)).unzip();
+        let milliseconds = started.elapsed().as_secs_f64() * 1e3;
+        Some(Self { modes: Modes::new(counts.to_vec(), terms, milliseconds), values })
+    }
+
+    /// The modes themselves.
+    pub fn modes(&self) -> &Modes {
+        &self.modes
+    }
+
+    /// What f32 has to do with the kept modes.
+    pub fn strength(&self, counts: &[u32]) -> Strength {
+        let square = |rgb: Rgb| rgb.map(|value| value * value);
+        let squares = |held: &[Rgb]| held.iter().fold([0.0; 3], |sum, &value| add(sum, square(value)));
+        let [x, y] = self.marginals(counts);
+        let turning = |held: &[Rgb]| {
+            (0u32..).zip(held).fold([0.0; 3], |sum, (n, &value)| add(sum, value.map(|value| f64::from(n) * value)))
+        };
+        Strength {
+            total: x.iter().fold([0.0; 3], |sum, &value| add(sum, value)),
+            across: [squares(&x), squares(&y)].map(|squares| squares.map(f64::sqrt)),
+            turning: add(turning(&x), turning(&y)),
         }
-        Some(Self { counts: counts.to_vec(), values: all })
     }
 
     /// The strongest modes, so few that what is left out stays within the budget, for each harmonic of x how many of y;
@@ -89,7 +99,7 @@ impl Amplitudes {
         }
         let counts = self.above(strongest * low.exp());
         let left = self.left(&counts);
-        if left > budget { (self.counts.clone(), 0.0) } else { (counts, left) }
+        if left > budget { (self.modes.counts().to_vec(), 0.0) } else { (counts, left) }
     }
 
     /// For each harmonic of x, and for each of y, what it holds together with all of the other axis that are kept.
@@ -107,7 +117,7 @@ impl Amplitudes {
     /// The modes of each harmonic of x.
     fn rows(&self) -> impl Iterator<Item = &[Rgb]> {
         let mut rest = &self.values[..];
-        self.counts.iter().map(move |&count| {
+        self.modes.counts().iter().map(move |&count| {
             let (row, others) = rest.split_at(count as usize);
             rest = others;
             row
@@ -144,31 +154,64 @@ struct View<'a> {
 }
 
 impl View<'_> {
-    /// The sums over a group, with the coefficients of a factor or with phases alone.
-    fn sums(&self, group: &Group, factor: Option<&dyn Factor>) -> Sums {
+    /// The sums over all groups, of every mode that each of them adds to, but for the modes' weights κ.
+    fn sums(&self, groups: &[Group]) -> Sums {
         let modes = self.counts.iter().map(|&count| count as usize).sum();
-        let chunks: Vec<Sums> = group
-            .members
-            .par_chunks(CHUNK)
-            .map(|members| {
-                let mut sums = Sums::zero(modes);
-                let mut axes = [Axis::new(group.degree[0]), Axis::new(group.degree[1])];
-                for &index in members {
-                    let ghost = &self.ghosts[index as usize];
-                    let (size, turns) = (ghost.size / self.period, ghost.center / self.period);
-                    axes[0].turn(factor, size.x, turns.x);
-                    axes[1].turn(factor, size.y, turns.y);
-                    let weight = [0, 1, 2].map(|colour| ghost.radiance[colour] / self.scale[colour]);
-                    sums.add_ghost(self.counts, weight, &axes);
-                }
-                sums
-            })
-            .collect();
-        chunks.into_iter().fold(Sums::zero(modes), |mut all, chunk| {
-            all.add(&chunk);
+        let batches: Vec<Sums> = batches(groups).par_iter().map(|batch| self.batch(batch, modes)).collect();
+        let mut batches = batches.into_iter();
+        let first = batches.next().unwrap_or_else(|| Sums::zero(modes));
+        batches.fold(first, |mut all, batch| {
+            all.add(&batch);
             all
         })
     }
+
+    fn batch(&self, pieces: &[(&Group, &[u32])], modes: usize) -> Sums {
+        let mut sums = Sums::zero(modes);
+        for &(group, members) in pieces {
+            let mut axes = [Axis::new(group.degree[0]), Axis::new(group.degree[1])];
+            match group.bell.shape().modes() {
+                Bells::Product(factor) => self.add(&mut sums, members, Some(factor), &mut axes),
+                // Ghosts of a bell that brings a table have one size.
+                Bells::Radial(radial) => {
+                    let mut phases = Sums::zero(modes);
+                    self.add(&mut phases, members, None, &mut axes);
+                    let size = group.smallest / self.period;
+                    sums.add_times(&phases, &radial.means(self.counts, size));
+                }
+            }
+        }
+        sums
+    }
+
+    /// Adds some ghosts of a group, with the coefficients of a factor or with phases alone.
+    fn add(&self, sums: &mut Sums, members: &[u32], factor: Option<&dyn Factor>, axes: &mut [Axis; 2]) {
+        for &index in members {
+            let ghost = &self.ghosts[index as usize];
+            let (size, turns) = (ghost.size / self.period, ghost.center / self.period);
+            axes[0].turn(factor, size.x, turns.x);
+            axes[1].turn(factor, size.y, turns.y);
+            sums.add_ghost(self.counts, weight(ghost, self.scale), axes);
+        }
+    }
+}
+
+/// The ghosts of all groups in batches of about [`CHUNK`], each with the group that its ghosts belong to.
+fn batches(groups: &[Group]) -> Vec<Vec<(&Group, &[u32])>> {
+    let pieces = groups.iter().flat_map(|group| group.members.chunks(CHUNK).map(move |members| (group, members)));
+    let mut batches: Vec<Vec<(&Group, &[u32])>> = Vec::new();
+    let mut room = 0;
+    for piece in pieces {
+        match batches.last_mut().filter(|_| piece.1.len() <= room) {
+            Some(batch) => batch.push(piece),
+            None => {
+                batches.push(vec![piece]);
+                room = CHUNK;
+            }
+        }
+        room -= piece.1.len();
+    }
+    batches
 }
 
 /// A ghost's coefficients along one axis, turned to its place.
@@ -235,16 +278,25 @@ impl Sums {
         }
     }
 
-    /// (|Z₊| + |Z₋|) / 2 of each mode.
-    fn amplitudes(&self) -> impl Iterator<Item = Rgb> {
-        self.0.iter().map(|sums| {
-            [0, 1, 2].map(|colour| {
-                let [re_re, im_re, re_im, im_im] = [0, 3, 6, 9].map(|part| sums[part + colour]);
-                let (sum, difference) = ((re_re - im_im).hypot(re_im + im_re), (re_re + im_im).hypot(im_re - re_im));
-                0.5 * (sum + difference)
-            })
-        })
+    /// Adds the others, each mode times its factor.
+    fn add_times(&mut self, others: &Self, factors: &[f64]) {
+        for ((mine, theirs), factor) in self.0.iter_mut().zip(&others.0).zip(factors) {
+            for (mine, theirs) in mine.iter_mut().zip(theirs) {
+                *mine += factor * theirs;
+            }
+        }
     }
+}
+
+/// A, B, C and D of a mode for each colour, and (|Z₊| + |Z₋|) κ/2.
+fn mode(sums: &[f64; 12], kappa: f64) -> (Mode, Rgb) {
+    let part = |colour: usize| [0, 3, 6, 9].map(|part| sums[part + colour]);
+    let term = |[re_re, im_re, re_im, im_im]: [f64; 4]| [re_re, -re_im, -im_re, im_im].map(|value| kappa * value);
+    let bound = |[re_re, im_re, re_im, im_im]: [f64; 4]| {
+        let (sum, difference) = ((re_re - im_im).hypot(re_im + im_re), (re_re + im_im).hypot(im_re - re_im));
+        0.5 * kappa * (sum + difference)
+    };
+    ([0, 1, 2].map(|colour| term(part(colour))), [0, 1, 2].map(|colour| bound(part(colour))))
 }
 
 fn add(a: Rgb, b: Rgb) -> Rgb {

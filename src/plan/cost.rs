@@ -1,6 +1,7 @@
 //! What an evaluator costs: a handful of constants, one for each kind of work.
 
-use super::{Evaluator, Plan, Request, gather};
+use super::{Evaluator, Layer, Precision, Series, gather};
+use crate::frame::Frame;
 
 /// Nanoseconds that each kind of work takes on one machine; every one of them finite and above 0.
 ///
@@ -90,22 +91,25 @@ pub struct Cost {
     pub milliseconds: f64,
 }
 
-/// The cost of a plan.
-pub(super) fn estimate(plan: &Plan, request: &Request) -> Cost {
-    let spectrum: f64 =
-        plan.groups.iter().map(|group| gather::cost(group, &group.transform, &request.cost_model)).sum();
-    let size = Size {
-        terms: plan.terms as f64,
-        degree: plan.degree,
-        nodes: plan.lattice.map_or([0.0; 2], |lattice| lattice.nodes.map(f64::from)),
+/// The cost of layers, by the name of their series where there is one.
+pub(super) fn estimate(layers: &[Layer], precision: Precision, frame: Frame, model: &CostModel) -> Cost {
+    let summed = |layer: &Layer| match layer {
+        Layer::Direct(groups) => groups.iter().map(|group| group.ghosts).sum(),
+        Layer::Series(_) => 0,
     };
-    let summed = plan.summed();
-    let nanoseconds = match plan.evaluator {
-        Evaluator::Direct => direct(summed, request) + request.cost_model.pass,
-        evaluator if summed > 0 => spectrum + field(evaluator, &size, request) + direct(summed, request),
-        evaluator => spectrum + field(evaluator, &size, request),
+    let sum = |layer: &Layer| direct(summed(layer), frame, model) * precision.slower();
+    let one = |layer: &Layer| match layer {
+        Layer::Direct(_) if layers.len() == 1 => sum(layer) + model.pass,
+        // Beside a series it is no pass of its own.
+        Layer::Direct(_) => sum(layer),
+        Layer::Series(series) => {
+            let spectrum: f64 = series.groups.iter().map(|group| gather::cost(group, &group.transform, model)).sum();
+            spectrum + field(series.evaluator, &Size::of(series), frame, model)
+        }
     };
-    Cost { evaluator: plan.evaluator, summed, milliseconds: nanoseconds * 1e-6 }
+    let evaluator = layers.first().map_or(Evaluator::Direct, Layer::evaluator);
+    let nanoseconds: f64 = layers.iter().map(one).sum();
+    Cost { evaluator, summed: layers.iter().map(summed).sum(), milliseconds: nanoseconds * 1e-6 }
 }
 
 /// What of a series its field's cost depends on.
@@ -116,10 +120,19 @@ pub(super) struct Size {
     pub nodes: [f64; 2],
 }
 
+impl Size {
+    fn of(series: &Series) -> Self {
+        Self {
+            terms: series.terms() as f64,
+            degree: series.degree(),
+            nodes: series.lattice.map_or([0.0; 2], |lattice| lattice.nodes.map(f64::from)),
+        }
+    }
+}
+
 /// What the field of a series costs with all the passes that it takes, in nanoseconds.
-pub(super) fn field(evaluator: Evaluator, size: &Size, request: &Request) -> f64 {
-    let model = request.cost_model;
-    let window = request.frame.window;
+pub(super) fn field(evaluator: Evaluator, size: &Size, frame: Frame, model: &CostModel) -> f64 {
+    let window = frame.window;
     let pixels = window.pixels() as f64;
     let rows = |rows: f64, columns: f64| {
         rows * size.terms * model.profile + rows * columns * f64::from(size.degree[0] + 1) * model.harmonic
@@ -137,9 +150,9 @@ pub(super) fn field(evaluator: Evaluator, size: &Size, request: &Request) -> f64
 }
 
 /// What summing so many ghosts at every pixel costs, in nanoseconds.
-pub(super) fn direct(ghosts: usize, request: &Request) -> f64 {
+pub(super) fn direct(ghosts: usize, frame: Frame, model: &CostModel) -> f64 {
     let bells = ghosts as f64 * slower(ghosts) + AROUND_BELLS;
-    request.frame.window.pixels() as f64 * bells * request.cost_model.bell
+    frame.window.pixels() as f64 * bells * model.bell
 }
 
 /// What `direct` does at a pixel beside its bells, in bells: 2 to 3 on llvmpipe, for 1 to 6 ghosts.

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::decay::Decay;
-use super::{CostModel, Group, Plan, Request, share};
+use super::{CostModel, Group, Prediction, share};
 use crate::series::moments::{Cells, order_within};
 
 /// How the spectrum of a group comes about.
@@ -38,20 +38,28 @@ const FEW: f64 = 10.0;
 /// No period is cut into more cells: each has a list of its ghosts in every chunk of them.
 const MOST_CELLS: u32 = 1 << 15;
 
-/// Chooses for each group, within a part of the tolerance.
-pub(super) fn choose(plan: &mut Plan, request: &Request) {
-    let left = request.tolerance - plan.predicted.total();
-    let most = share::GATHERING * request.tolerance;
+/// Chooses for each group, within a part of the tolerance of which so much is predicted already; and gives the error that
+/// this adds.
+pub(super) fn choose(
+    groups: &mut [Group],
+    period: DVec2,
+    tolerance: f64,
+    predicted: &Prediction,
+    model: &CostModel,
+) -> f64 {
+    let left = tolerance - predicted.total();
+    let most = share::GATHERING * tolerance;
     // What was asked for by hand may be beyond the tolerance already; then this adds nothing that could be seen.
     let budget = if left > 0.0 { most.min(left) } else { most };
-    let part = budget / plan.groups.len().max(1) as f64;
-    let period = plan.period;
-    for group in &mut plan.groups {
-        if let Some((cells, error)) = cheaper(group, period, part, &request.cost_model) {
+    let part = budget / groups.len().max(1) as f64;
+    let mut added = 0.0;
+    for group in groups {
+        if let Some((cells, error)) = cheaper(group, period, part, model) {
             group.transform = Transform::Gather(cells);
-            plan.predicted.gathering += error;
+            added += error;
         }
     }
+    added
 }
 
 /// The cells that are cheapest for a group, and the error that they leave; none where a dispatch is cheaper.

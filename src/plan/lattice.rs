@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::DVec2;
 
-use super::Plan;
+use super::Group;
 use super::amplitudes::{Rgb, largest};
 use super::decay::Decay;
 use crate::frame::Frame;
@@ -42,10 +42,10 @@ impl Marginals {
     }
 
     /// As if all ghosts stood at one place.
-    pub fn by_weights(plan: &Plan) -> Self {
-        let mut sums = plan.degree.map(|degree| vec![0.0; degree as usize + 1]);
-        for group in &plan.groups {
-            let held = Decay::new(group, plan.period).marginals(group.degree);
+    pub fn by_weights(groups: &[Group], degree: [u32; 2], period: DVec2) -> Self {
+        let mut sums = degree.map(|degree| vec![0.0; degree as usize + 1]);
+        for group in groups {
+            let held = Decay::new(group, period).marginals(group.degree);
             for (sums, held) in sums.iter_mut().zip(held) {
                 for (sum, held) in sums.iter_mut().zip(held) {
                     *sum += group.weight * held;
@@ -83,7 +83,8 @@ impl Marginals {
 /// [`Error::Plan`] where it would have more than [`MOST_NODES`] along an axis, or where the oversampling is too little
 /// for a spline.
 pub(super) fn coarsest(
-    plan: &Plan,
+    degree: [u32; 2],
+    period: DVec2,
     marginals: &Marginals,
     frame: Frame,
     oversampling: Option<f64>,
@@ -97,21 +98,22 @@ pub(super) fn coarsest(
     // The other axis adds about as much, and their product a little.
     let part = 0.49 * budget;
     let along = |axis: usize, period: f64, extent: f64| {
-        let over = oversampling.unwrap_or_else(|| marginals.least(axis, plan.degree[axis], part));
-        step(plan.degree[axis], period, extent, over)
+        let over = oversampling.unwrap_or_else(|| marginals.least(axis, degree[axis], part));
+        step(degree[axis], period, extent, over)
     };
-    let (step_x, over_x) = along(0, plan.period.x, extent.x);
-    let (step_y, over_y) = along(1, plan.period.y, extent.y);
+    let (step_x, over_x) = along(0, period.x, extent.x);
+    let (step_y, over_y) = along(1, period.y, extent.y);
     let nodes = |extent: f64, step: f64| (extent / step).floor() as u32 + 4;
     let step = DVec2::new(step_x, step_y);
     let nodes = [nodes(extent.x, step_x), nodes(extent.y, step_y)];
     if nodes.iter().any(|&nodes| nodes > MOST_NODES) {
         let [x, y] = nodes;
         return Err(Error::Plan(format!(
-            "a lattice of {x} x {y} nodes is beyond {MOST_NODES} a side; rows needs none"
+            "a lattice of {x} x {y} nodes is beyond {MOST_NODES} a side, which is what grid can index; series and rows \
+             need none"
         )));
     }
-    let theta = TAU * step / plan.period;
+    let theta = TAU * step / period;
     let (x, y) = (marginals.error(0, theta.x), marginals.error(1, theta.y));
     Ok(Lattice { step, nodes, oversampling: DVec2::new(over_x, over_y), error: x + y + x * y })
 }

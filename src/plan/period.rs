@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::slots::{Slots, by_chunks};
 use super::weigh::{Weighed, along};
-use crate::frame::Frame;
+use crate::problem::Problem;
 use crate::scene::Ghost;
 use crate::series::{Bell, Modes, Shape};
 
@@ -57,9 +57,9 @@ impl Reach {
 }
 
 /// Gathers the ghosts into some hundreds of reaches, so that trying a period costs the same for any number of them.
-pub(super) fn reaches(ghosts: &[Ghost], weighed: &Weighed, frame: Frame) -> Vec<Reach> {
-    let bounds = <[DVec2; 2]>::from(frame.bounds());
-    let chunks = by_chunks(ghosts, &weighed.weights, |ghosts| {
+pub(super) fn reaches(problem: &Problem, weighed: &Weighed) -> Vec<Reach> {
+    let bounds = <[DVec2; 2]>::from(problem.frame().bounds());
+    let chunks = by_chunks(problem.ghosts(), &weighed.weights, |ghosts| {
         joined(ghosts.map(|(_, ghost, weight)| (&ghost.bell, Reach::new(ghost, weight, bounds))))
     });
     joined(chunks.iter().flatten().map(|reach| (&reach.bell, reach.clone())))
@@ -121,6 +121,10 @@ pub(super) fn error(reaches: &[Reach], period: DVec2) -> f64 {
     };
     let one = |reach: &Reach| {
         let shape = reach.bell.shape();
+        // The copies of a bell that is periodic itself are the bell.
+        if shape.period() == Some(period) {
+            return 0.0;
+        }
         let x = wrap(shape, period.x, reach.farthest.x, reach.size.x);
         let y = wrap(shape, period.y, reach.farthest.y, reach.size.y);
         reach.weight * (x * reach.nearest.y + y * reach.nearest.x + x * y)

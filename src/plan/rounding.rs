@@ -1,23 +1,56 @@
 //! What f32 costs.
 
-use glam::DVec2;
+use std::f64::consts::TAU;
 
 use super::Evaluator;
-use super::slots::by_chunks;
-use super::weigh::{Weighed, along};
-use crate::frame::Frame;
-use crate::scene::Ghost;
+use super::amplitudes::{Rgb, largest};
+use super::weigh::Weighed;
 
 /// The error, for each unit of weight, that phases, tables and sums in f32 make at most: about twice the worst that
 /// tests/suite/rounding.rs has seen on Mesa's software renderer, for K from 1 to 20000 and N up to 220. A single bell
 /// is the worst case: the errors of many average out.
 fn per_weight(evaluator: Evaluator) -> f64 {
     match evaluator {
-        Evaluator::Direct => 6e-7, // seen: 2.7e-7
+        Evaluator::Direct => 0.0,  // see `direct`
         Evaluator::Series => 8e-7, // seen: 3.5e-7
         Evaluator::Rows => 1.2e-6, // seen: 6.0e-7
         Evaluator::Grid => 1.6e-6, // seen: 8.3e-7, with some interpolation in it
     }
+}
+
+/// What f32 computes with, where the modes of the field are known: bounds of what they add at any point, for each colour.
+pub(super) struct Strength {
+    /// Of all modes together.
+    pub total: Rgb,
+    /// The root of the sum of squares over the harmonics of x, each with all that it holds; and over those of y.
+    pub across: [Rgb; 2],
+    /// Of all modes, each times the sum of its harmonics.
+    pub turning: Rgb,
+}
+
+/// The error of f32, storage included, of a series whose modes are known; relative to the field's largest value.
+///
+/// A phase is off by half of 2⁻³² of a turn, times the harmonic, which shifts every wave of a pixel alike: that is a bound.
+/// Everything else, the roundings of terms, tables and sums, has nothing to do with each other: those of the tables go
+/// with the root of the sum of squares over the harmonics, and those of the sums with what is added up, which is no more
+/// than the field and a few times what the harmonics still to come may hold by chance. Their factors are fitted:
+/// docs/accuracy.md, "Rounding".
+pub(super) fn of_modes(evaluator: Evaluator, strength: &Strength, degree: [u32; 2]) -> f64 {
+    const UNIT: f64 = 0.5 * f32::EPSILON as f64;
+    let [tables, sums] = match evaluator {
+        Evaluator::Direct => [0.0; 2],
+        Evaluator::Series => [3.0, 0.8],
+        Evaluator::Rows => [3.0, 0.8],
+        Evaluator::Grid => [6.0, 1.6],
+    };
+    let added = (2.0 + f64::from(degree[0]) + f64::from(degree[1])).sqrt();
+    let one = |colour: usize| {
+        let [x, y] = strength.across.map(|across| across[colour]);
+        let partial = strength.total[colour].min(1.0 + 2.0 * (x + y));
+        let turned = TAU * 2f64.powi(-33) * strength.turning[colour];
+        turned + UNIT * (tables * (x + y) + sums * added * partial)
+    };
+    largest([0, 1, 2].map(one))
 }
 
 /// Of that, what comes of storing alone: half a unit in the last place of each result that one pass leaves to the next. For
@@ -36,94 +69,13 @@ pub(super) fn stored(weighed: &Weighed, evaluator: Evaluator) -> f64 {
     HALF_A_UNIT * results * weight
 }
 
-/// `direct` has positions in f32, so a bell far from the origin shifts: by the rounding of its centre, which is known, and
-/// by those of the pixel's position, a product with one over the picture's height: half a unit for each of the two, and a
-/// little for the pixel being somewhere else than the centre.
-const PER_POSITION: f64 = 1.1 * f32::EPSILON as f64;
-
 /// Harmonics that [`per_weight`] was seen with. Beyond them it grows, by itself for each `PER_DEGREE`: a phase's rounding
 /// is multiplied by the harmonic, and there are more terms to add up.
 pub(super) const SEEN_DEGREE: u32 = 100;
 const PER_DEGREE: f64 = 200.0;
 
 /// A bound of the error of f32, storage included, for series up to a degree; relative to the field's largest value.
-pub(super) fn bound(ghosts: &[Ghost], weighed: &Weighed, frame: Frame, evaluator: Evaluator, degree: u32) -> f64 {
-    if evaluator != Evaluator::Direct {
-        let growth = 1.0 + f64::from(degree.saturating_sub(SEEN_DEGREE)) / PER_DEGREE;
-        return per_weight(evaluator) * growth * weighed.weight.max(1.0);
-    }
-    let kept = weighed.weights.iter().filter(|&&weight| weight > 0.0).count();
-    let sum =
-        if kept <= LOOKED_AT { direct_in_cells(ghosts, weighed, frame) } else { direct_anywhere(ghosts, weighed) };
-    sum.max(per_weight(evaluator))
-}
-
-/// Ghosts that are looked at in every cell, at most: `direct` is for a few.
-const LOOKED_AT: usize = 512;
-/// Cells along each side of the window.
-const CELLS: u32 = 8;
-
-/// What the direct sum is off by at any pixel, at most, as if every ghost were nearest to the same one.
-fn direct_anywhere(ghosts: &[Ghost], weighed: &Weighed) -> f64 {
-    let sums = by_chunks(ghosts, &weighed.weights, |ghosts| -> f64 {
-        let one = |(index, ghost, weight): (u32, &Ghost, f64)| {
-            let near = weighed.nearest[index as usize].abs();
-            weight * off(shift(ghost), &Place::new(ghost, near.x), &Place::new(ghost, near.y))
-        };
-        ghosts.map(one).sum()
-    });
-    sums.iter().sum()
-}
-
-/// What the direct sum is off by at any pixel, at most: the worst of some cells of the window, in each of which every
-/// ghost is as far away as the cell.
-fn direct_in_cells(ghosts: &[Ghost], weighed: &Weighed, frame: Frame) -> f64 {
-    let mut sums = [[0.0; CELLS as usize]; CELLS as usize];
-    let (low, high) = frame.bounds();
-    let cell = (high - low) / f64::from(CELLS);
-    let kept = ghosts.iter().zip(&weighed.weights).zip(&weighed.nearest).filter(|((_, weight), _)| **weight > 0.0);
-    for ((ghost, &weight), nearest) in kept {
-        let near = nearest.abs();
-        let places: [_; CELLS as usize] = std::array::from_fn(|k| {
-            let corner = low + cell * k as f64;
-            let offset = ((ghost.center.clamp(corner, corner + cell) - ghost.center) / ghost.size).abs().max(near);
-            [Place::new(ghost, offset.x), Place::new(ghost, offset.y)]
-        });
-        let shift = shift(ghost);
-        for (row, [_, y]) in sums.iter_mut().zip(&places) {
-            for (sum, [x, _]) in row.iter_mut().zip(&places) {
-                *sum += weight * off(shift, x, y);
-            }
-        }
-    }
-    sums.into_iter().flatten().fold(0.0, f64::max)
-}
-
-/// What a bell is along one axis at some distance or farther, in sizes.
-struct Place {
-    value: f64,
-    steepest: f64,
-    squared: f64,
-}
-
-impl Place {
-    fn new(ghost: &Ghost, distance: f64) -> Self {
-        let shape = ghost.bell.shape();
-        // A periodic bell is near again farther on, and its value bounded by 1; exp(−E) (1 + E) is below 1 for every E.
-        let squared = if shape.period().is_some() { 0.0 } else { distance * distance };
-        Self { value: along(shape, distance), steepest: shape.steepest(distance), squared }
-    }
-}
-
-/// How far f32 may shift a bell, in sizes.
-fn shift(ghost: &Ghost) -> DVec2 {
-    let rounded = |center: f64| (center - f64::from(center as f32)).abs() + PER_POSITION * center.abs();
-    DVec2::new(rounded(ghost.center.x), rounded(ghost.center.y)) / ghost.size
-}
-
-/// What one bell of peak 1 is off by in the direct sum, at most: unlike a series, it is as small as the bell itself at
-/// the nearest pixel, in which a rounding of the exponent counts as often as the exponent is large.
-fn off(shift: DVec2, x: &Place, y: &Place) -> f64 {
-    let shifted = shift.x * x.steepest * y.value + shift.y * y.steepest * x.value;
-    per_weight(Evaluator::Direct) * x.value * y.value * (1.0 + 0.5 * (x.squared + y.squared)) + shifted.min(1.0)
+pub(super) fn bound(weighed: &Weighed, evaluator: Evaluator, degree: u32) -> f64 {
+    let growth = 1.0 + f64::from(degree.saturating_sub(SEEN_DEGREE)) / PER_DEGREE;
+    per_weight(evaluator) * growth * weighed.weight.max(1.0)
 }

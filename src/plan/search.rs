@@ -1,7 +1,9 @@
 //! Plans for those who do not know the tolerance: what a time budget buys, and the best that f32 can give.
 
+use std::sync::Arc;
+
 use super::{Plan, Request, plan};
-use crate::scene::Ghost;
+use crate::problem::Problem;
 use crate::{Error, Result};
 
 /// The loosest tolerance that a budget is spent on: beyond it the glare has little to do with the truth.
@@ -21,17 +23,17 @@ const ABOVE: f64 = 1.0001;
 ///
 /// # Errors
 /// Those of [`plan`], but for [`Error::ToleranceBelowFloor`].
-pub fn plan_at_least(ghosts: &[Ghost], request: &Request) -> Result<Plan> {
+pub fn plan_at_least(problem: &Arc<Problem>, request: &Request) -> Result<Plan> {
     let mut request = *request;
     // The floor may rise where the evaluator that had the lowest is refused for another reason there, so at most once
     // for each evaluator; more often than that, it is an error like any other.
     for _ in 0..8 {
-        match plan(ghosts, &request) {
+        match plan(problem, &request) {
             Err(Error::ToleranceBelowFloor { floor, .. }) if ABOVE * floor < 1.0 => request.tolerance = ABOVE * floor,
             result => return result,
         }
     }
-    plan(ghosts, &request)
+    plan(problem, &request)
 }
 
 /// The most accurate plan found that is predicted to cost at most `budget` milliseconds; the request's tolerance does
@@ -43,14 +45,14 @@ pub fn plan_at_least(ghosts: &[Ghost], request: &Request) -> Result<Plan> {
 /// # Errors
 /// [`Error::BudgetTooSmall`] where even a tolerance of [`LOOSEST`] costs more, with what that costs; otherwise those of
 /// [`plan`] at that tolerance.
-pub fn plan_within(ghosts: &[Ghost], request: &Request, budget: f64) -> Result<Plan> {
+pub fn plan_within(problem: &Arc<Problem>, request: &Request, budget: f64) -> Result<Plan> {
     let at = |tolerance| Request { tolerance, ..*request };
-    let mut best = plan(ghosts, &at(LOOSEST))?;
+    let mut best = plan(problem, &at(LOOSEST))?;
     if cost(&best) > budget {
         return Err(Error::BudgetTooSmall { asked: budget, least: cost(&best) });
     }
     let within = |plan: &Plan| cost(plan) <= budget;
-    let tightest = match plan_at_least(ghosts, &at(TIGHTEST)) {
+    let tightest = match plan_at_least(problem, &at(TIGHTEST)) {
         Ok(plan) if within(&plan) => return Ok(reached(plan)),
         Ok(plan) => plan.tolerance,
         // A series may need a degree that cannot be had where a looser one does not.
@@ -59,7 +61,7 @@ pub fn plan_within(ghosts: &[Ghost], request: &Request, budget: f64) -> Result<P
     let (mut low, mut high) = (tightest, LOOSEST);
     while high > CLOSE * low {
         let middle = (low * high).sqrt();
-        match plan(ghosts, &at(middle)) {
+        match plan(problem, &at(middle)) {
             Ok(plan) if within(&plan) => (high, best) = (middle, plan),
             _ => low = middle,
         }

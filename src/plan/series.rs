@@ -3,9 +3,15 @@
 use glam::DVec2;
 
 use super::amplitudes::{self, Amplitudes};
+use super::candidate::Survey;
 use super::lattice::{self, Marginals};
-use super::{Evaluator, Group, Plan, Prediction, Request, Survey, check, cost, gather, period, rounding, share, terms};
-use crate::scene::Ghost;
+use super::rounding::Strength;
+use super::{
+    Evaluator, Group, Lattice, Layer, Modes, Precision, Prediction, Request, Series, check, cost, gather, period,
+    rounding, share, terms,
+};
+use crate::frame::Frame;
+use crate::problem::Problem;
 use crate::{Error, Result};
 
 /// What of the tolerance may lie beyond the modes of [`Wide`].
@@ -23,19 +29,25 @@ pub(super) struct Wide {
 
 impl Wide {
     /// None where looking at every ghost's phases takes too long, or where the series is given.
-    pub fn new(ghosts: &[Ghost], survey: &Survey, request: &Request) -> Option<Self> {
+    pub fn new(problem: &Problem, survey: &Survey, request: &Request) -> Option<Self> {
         let given = request.degree.is_some() || request.evaluator == Some(Evaluator::Direct);
         if given || !amplitudes::worth_a_try(&survey.groups) {
             return None;
         }
-        let rounding = rounding::bound(ghosts, &survey.weighed, request.frame, Evaluator::Grid, rounding::SEEN_DEGREE);
+        let rounding = rounding::bound(&survey.weighed, Evaluator::Grid, rounding::SEEN_DEGREE);
         let usable = (request.tolerance - rounding).max(0.25 * request.tolerance);
         let period = request.period.unwrap_or_else(|| period::shortest(&survey.reaches, usable * share::PERIODISATION));
         let mut groups = survey.groups.clone();
         let counts = terms::fewest(&mut groups, period, usable * BEYOND).ok()?;
-        let amplitudes = Amplitudes::new(ghosts, &groups, &counts, period, survey.weighed.scale)?;
+        let amplitudes = Amplitudes::new(problem.ghosts(), &groups, &counts, period, survey.weighed.scale)?;
         let beyond = terms::error(&groups, period, &counts);
         Some(Self { period, periodisation: period::error(&survey.reaches, period), groups, amplitudes, beyond })
+    }
+
+    /// What f32 costs with all of the modes.
+    pub fn rounding(&self, evaluator: Evaluator) -> f64 {
+        let counts = self.amplitudes.modes().counts();
+        rounding::of_modes(evaluator, &self.amplitudes.strength(counts), [counts.len() as u32 - 1, counts[0] - 1])
     }
 
     /// Whether it leaves enough of what may be used up.
@@ -44,112 +56,155 @@ impl Wide {
         period && self.beyond <= 2.0 * BEYOND * usable
     }
 
-    /// The plan with the strongest of the modes, and what the kept ones hold.
-    fn terms(&self, plan: &mut Plan, truncation: f64) -> Marginals {
+    /// The strongest of the modes, and what they hold.
+    fn terms(&self, truncation: f64) -> Terms {
         let (counts, left) = self.amplitudes.kept(truncation - self.beyond);
-        plan.groups = self.groups.clone();
-        for group in &mut plan.groups {
+        let mut groups = self.groups.clone();
+        for group in &mut groups {
             let [n, m] = group.degree;
             group.degree = [n.min(counts.len() as u32 - 1), m.min(counts[0] - 1)];
         }
-        plan.predicted.truncation = self.beyond + left;
         let marginals = Marginals::of(self.amplitudes.marginals(&counts));
-        plan.counts = counts;
-        marginals
+        let (modes, strength) = (Some(self.amplitudes.modes().clone()), Some(self.amplitudes.strength(&counts)));
+        Terms { groups, modes, strength, marginals: Some(marginals), truncation: self.beyond + left, counts }
     }
 }
 
-/// Chooses period, terms and lattice within what may be used up.
+/// Kept modes, and what is known of them.
+struct Terms {
+    groups: Vec<Group>,
+    counts: Vec<u32>,
+    /// The modes themselves, where they were computed.
+    modes: Option<Modes>,
+    strength: Option<Strength>,
+    /// What each harmonic holds, where it was looked at.
+    marginals: Option<Marginals>,
+    /// What is left out.
+    truncation: f64,
+}
+
+/// What a series is planned from.
+struct Brief<'a> {
+    evaluator: Evaluator,
+    survey: &'a Survey,
+    wide: Option<&'a Wide>,
+    frame: Frame,
+    request: &'a Request,
+    period: DVec2,
+    /// What is predicted without the terms.
+    predicted: Prediction,
+    /// What of the tolerance may be used up, and what of that the terms have to make up for.
+    usable: f64,
+    excess: f64,
+}
+
+/// Chooses period, terms and lattice within what may be used up, and adds what they cost to what is predicted.
 ///
 /// # Errors
 /// [`Error::Plan`] where there is no such series.
 pub(super) fn plan_series(
-    plan: &mut Plan,
+    evaluator: Evaluator,
     survey: &Survey,
     wide: Option<&Wide>,
+    frame: Frame,
     request: &Request,
+    predicted: Prediction,
     usable: f64,
-) -> Result<()> {
+) -> Result<(Series, Prediction)> {
     let wide = wide.filter(|wide| wide.fits(request, usable));
-    plan.period = match (request.period, wide) {
+    let period = match (request.period, wide) {
         (Some(period), _) => period,
         (None, Some(wide)) => wide.period,
         (None, None) => period::shortest(&survey.reaches, usable * share::PERIODISATION),
     };
-    plan.predicted.periodisation =
-        wide.map_or_else(|| period::error(&survey.reaches, plan.period), |w| w.periodisation);
-    check::copies(plan.period, plan.predicted.periodisation)?;
-    let excess = excess(plan, usable);
-    if plan.evaluator != Evaluator::Grid {
-        plan_terms(plan, wide, request, usable * share::TRUNCATION - excess)?;
-        gather::choose(plan, request);
-        return Ok(());
+    let periodisation = wide.map_or_else(|| period::error(&survey.reaches, period), |w| w.periodisation);
+    check::copies(period, periodisation)?;
+    let predicted = Prediction { periodisation, ..predicted };
+    let excess = excess(&predicted, usable);
+    let brief = Brief { evaluator, survey, wide, frame, request, period, predicted, usable, excess };
+    if evaluator != Evaluator::Grid {
+        return brief.finish(brief.terms(share::TRUNCATION)?, None);
     }
-    let mut cheapest: Option<(f64, Plan)> = None;
-    let mut refusal = None;
-    for (truncation, interpolation) in share::GRID {
-        match with_lattice(plan.clone(), wide, request, usable * truncation - excess, usable * interpolation) {
-            Ok(plan) => {
-                let cost = cost::estimate(&plan, request).milliseconds;
-                if cheapest.as_ref().is_none_or(|(least, _)| cost < *least) {
-                    cheapest = Some((cost, plan));
-                }
-            }
-            Err(error) => refusal = Some(error),
-        }
+    let [first, second] = share::GRID.map(|(truncation, interpolation)| brief.with_lattice(truncation, interpolation));
+    let cost = |(series, _): &(Series, Prediction)| {
+        cost::estimate(&[Layer::Series(series.clone())], Precision::default(), frame, &request.cost_model).milliseconds
+    };
+    match (first, second) {
+        (Ok(first), Ok(second)) => Ok(if cost(&second) < cost(&first) { second } else { first }),
+        (Ok(only), Err(_)) | (_, Ok(only)) => Ok(only),
+        (Err(_), Err(refusal)) => Err(refusal),
     }
-    match (cheapest, refusal) {
-        (Some((_, cheapest)), _) => *plan = cheapest,
-        (None, Some(refusal)) => return Err(refusal),
-        (None, None) => {}
-    }
-    Ok(())
 }
 
 /// What is dropped and what copies add beyond their shares of what may be used up; the terms have to make up for it.
 ///
 /// Ghosts are dropped by the tolerance, before anyone knows what rounding takes of it; a period that serves every
 /// evaluator is no evaluator's own; and one that was given may be off by anything, which no number of terms mends.
-fn excess(plan: &Plan, usable: f64) -> f64 {
+fn excess(predicted: &Prediction, usable: f64) -> f64 {
     const MENDED: f64 = 0.1;
-    let Prediction { dropped, periodisation, .. } = plan.predicted;
     let shares = share::DROPPED + share::PERIODISATION - share::GATHERING;
     // Nothing may be left at all, where the series is given.
-    (dropped + periodisation - shares * usable).min(MENDED * usable).max(0.0)
+    (predicted.dropped + predicted.periodisation - shares * usable).min(MENDED * usable).max(0.0)
 }
 
-/// The plan with terms and a lattice, each within its part of the tolerance.
-fn with_lattice(
-    mut plan: Plan,
-    wide: Option<&Wide>,
-    request: &Request,
-    truncation: f64,
-    interpolation: f64,
-) -> Result<Plan> {
-    let marginals = plan_terms(&mut plan, wide, request, truncation)?;
-    let lattice = lattice::coarsest(&plan, &marginals, request.frame, request.oversampling, interpolation)?;
-    plan.predicted.interpolation = lattice.error;
-    plan.lattice = Some(lattice);
-    gather::choose(&mut plan, request);
-    Ok(plan)
-}
+impl Brief<'_> {
+    /// Whether nothing of the series is left to plan, and its error comes as it comes.
+    fn given(&self) -> bool {
+        self.request.period.is_some() && self.request.degree.is_some()
+    }
 
-/// Chooses the kept terms within a part of the tolerance, and gives what they hold.
-fn plan_terms(plan: &mut Plan, wide: Option<&Wide>, request: &Request, truncation: f64) -> Result<Marginals> {
-    let mut known = None;
-    match (request.degree, wide) {
-        (Some(degree), _) => plan.counts = terms::rectangle(&mut plan.groups, degree),
-        (None, Some(wide)) => known = Some(wide.terms(plan, truncation)),
-        (None, None) => plan.counts = terms::fewest(&mut plan.groups, plan.period, truncation)?,
+    /// The series with terms and a lattice, each within its part of what may be used up.
+    fn with_lattice(&self, truncation: f64, interpolation: f64) -> Result<(Series, Prediction)> {
+        let mut terms = self.terms(truncation)?;
+        let degree = [terms.counts.len() as u32 - 1, terms.counts[0] - 1];
+        let marginals = terms.marginals.take();
+        let marginals = marginals.unwrap_or_else(|| Marginals::by_weights(&terms.groups, degree, self.period));
+        // Where the series is given there may be nothing left: then a lattice is to cost about what rounding does.
+        let budget = interpolation * self.usable.max(if self.given() { self.predicted.single() } else { 0.0 });
+        let over = self.request.oversampling;
+        let lattice = lattice::coarsest(degree, self.period, &marginals, self.frame, over, budget)?;
+        self.finish(terms, Some(lattice))
     }
-    plan.terms = plan.counts.iter().map(|&count| count as usize).sum();
-    if plan.terms > request.most_terms {
-        let most = request.most_terms;
-        return Err(Error::Plan(format!("the series would have {} terms, and {most} fit on the device", plan.terms)));
+
+    /// The kept terms, within a part of what may be used up.
+    fn terms(&self, part: f64) -> Result<Terms> {
+        let truncation = self.usable * part - self.excess;
+        let terms = match (self.request.degree, self.wide) {
+            (None, Some(wide)) => wide.terms(truncation),
+            (degree, _) => {
+                let mut groups = self.survey.groups.clone();
+                let counts = match degree {
+                    Some(degree) => terms::rectangle(&mut groups, degree),
+                    None => terms::fewest(&mut groups, self.period, truncation)?,
+                };
+                Terms { groups, counts, modes: None, strength: None, marginals: None, truncation: f64::NAN }
+            }
+        };
+        let count: usize = terms.counts.iter().map(|&count| count as usize).sum();
+        let most = self.request.most_terms;
+        if count > most {
+            return Err(Error::Plan(format!("the series would have {count} terms, and {most} fit on the device")));
+        }
+        if terms.marginals.is_some() {
+            return Ok(terms);
+        }
+        Ok(Terms { truncation: terms::error(&terms.groups, self.period, &terms.counts), ..terms })
     }
-    plan.degree = [plan.counts.len() as u32 - 1, plan.counts[0] - 1];
-    Ok(known.unwrap_or_else(|| {
-        plan.predicted.truncation = terms::error(&plan.groups, plan.period, &plan.counts);
-        Marginals::by_weights(plan)
-    }))
+
+    /// The series, with all that it adds to the error.
+    fn finish(&self, terms: Terms, lattice: Option<Lattice>) -> Result<(Series, Prediction)> {
+        let Terms { mut groups, counts, modes, strength, marginals: _, truncation } = terms;
+        let interpolation = lattice.map_or(0.0, |lattice| lattice.error);
+        let mut predicted = Prediction { truncation, interpolation, ..self.predicted };
+        if let Some(strength) = strength {
+            // What was planned with may have been a bound by weights.
+            let degree = [counts.len() as u32 - 1, counts[0] - 1];
+            let known = rounding::of_modes(self.evaluator, &strength, degree) + self.survey.summed_in.1;
+            predicted = predicted.with_single(known.min(predicted.single()));
+        }
+        let Request { tolerance, ref cost_model, .. } = *self.request;
+        predicted.gathering = gather::choose(&mut groups, self.period, tolerance, &predicted, cost_model);
+        let (evaluator, period) = (self.evaluator, self.period);
+        Ok((Series { evaluator, period, counts: counts.into(), groups, modes, lattice }, predicted))
+    }
 }

@@ -1,12 +1,19 @@
 //! Which ghosts a direct sum takes beside the series: a few small ones can ask for more terms than all the others.
 
+use glam::DVec2;
+
+use super::candidate::Survey;
 use super::decay::Decay;
 use super::weigh::Weighed;
-use super::{Evaluator, Group, Request, Survey, Transform, cost, gather, period, rounding, share};
-use crate::scene::Ghost;
+use super::{CostModel, Evaluator, Group, Request, Transform, cost, direct, gather, period, share};
+use crate::frame::Frame;
+use crate::problem::Problem;
 
 /// Ghosts that may be summed beside a series, at most.
 const FEW: usize = 512;
+
+/// What of the tolerance their rounding may take before they are summed in 64-bit floats.
+const SUMMED: f64 = 0.1;
 
 /// The others should cost less than this part of all of them, by the estimate, to be planned for.
 const WORTH_IT: f64 = 0.9;
@@ -19,12 +26,12 @@ const NODES: f64 = 1.6;
 ///
 /// Groups go over in the order of the terms that they need: the union of all terms only shrinks with the neediest. How
 /// many do is decided by bounds by weights, which are cheap; what comes of it is planned like any other candidate.
-pub(super) fn apart(ghosts: &[Ghost], survey: &Survey, request: &Request) -> Option<Survey> {
+pub(super) fn apart(problem: &Problem, survey: &Survey, request: &Request) -> Option<Survey> {
     // Everything is to be a series, or in one period.
     if request.evaluator.is_some() || request.degree.is_some() || request.period.is_some() {
         return None;
     }
-    let summed = neediest(survey, request)?;
+    let summed = neediest(survey, problem.frame(), request)?;
     let (mut left, mut moved) = (Vec::new(), Vec::new());
     for (index, group) in survey.groups.iter().enumerate() {
         if summed.contains(&index) { &mut moved } else { &mut left }.push(Group {
@@ -33,9 +40,9 @@ pub(super) fn apart(ghosts: &[Ghost], survey: &Survey, request: &Request) -> Opt
         });
     }
     let weighed = only(&survey.weighed, &left);
-    let rounding = rounding::bound(ghosts, &only(&survey.weighed, &moved), request.frame, Evaluator::Direct, 0);
-    let reaches = period::reaches(ghosts, &weighed, request.frame);
-    Some(Survey { weighed, groups: left, reaches, summed: moved, summed_rounding: rounding })
+    let bounds = direct::bounds(problem, &only(&survey.weighed, &moved));
+    let reaches = period::reaches(problem, &weighed);
+    Some(Survey { weighed, groups: left, reaches, summed: moved, summed_in: bounds.within(SUMMED * request.tolerance) })
 }
 
 /// The weights of these groups' ghosts alone.
@@ -49,8 +56,8 @@ fn only(weighed: &Weighed, groups: &[Group]) -> Weighed {
 
 /// The groups to be summed directly, by their indices; none where a series of all, or a sum of all, is estimated to be about
 /// as cheap.
-fn neediest(survey: &Survey, request: &Request) -> Option<Vec<usize>> {
-    let groups = &survey.groups;
+fn neediest(survey: &Survey, frame: Frame, request: &Request) -> Option<Vec<usize>> {
+    let (groups, model) = (&survey.groups, &request.cost_model);
     let small = |group: &&Group| group.ghosts <= FEW;
     if groups.len() < 2 || !groups.iter().any(|group| small(&group)) {
         return None;
@@ -77,9 +84,9 @@ fn neediest(survey: &Survey, request: &Request) -> Option<Vec<usize>> {
         }
         let series = left.iter().map(|&index| {
             let needed = needs[index].as_ref().map_or([0; 2], |counts| [counts.len() as u32 - 1, counts[0] - 1]);
-            gather::cost(&Group { degree: needed, ..groups[index].clone() }, &Transform::Dispatch, &request.cost_model)
+            gather::cost(&Group { degree: needed, ..groups[index].clone() }, &Transform::Dispatch, model)
         });
-        Some(series.sum::<f64>() + cheapest_field(&counts, period, request) + cost::direct(summed, request))
+        Some(series.sum::<f64>() + cheapest_field(&counts, period, frame, model) + cost::direct(summed, frame, model))
     };
     let most = order.iter().scan(0, |sum, &index| {
         *sum += groups[index].ghosts;
@@ -87,7 +94,7 @@ fn neediest(survey: &Survey, request: &Request) -> Option<Vec<usize>> {
     });
     // The last group stays: all of them are `direct` itself.
     let most = most.count().min(groups.len() - 1);
-    let direct = cost::direct(groups.iter().map(|group| group.ghosts).sum(), request);
+    let direct = cost::direct(groups.iter().map(|group| group.ghosts).sum(), frame, model);
     let whole = estimate(0).map_or(direct, |series| series.min(direct));
     let costs = (1..=most).filter_map(|moved| Some((estimate(moved)?, moved)));
     let (least, moved) = costs.min_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -95,12 +102,12 @@ fn neediest(survey: &Survey, request: &Request) -> Option<Vec<usize>> {
 }
 
 /// What the field of so many terms is estimated to cost by the evaluator that is best at it, in nanoseconds.
-fn cheapest_field(counts: &[u32], period: glam::DVec2, request: &Request) -> f64 {
-    let (low, high) = request.frame.bounds();
+fn cheapest_field(counts: &[u32], period: DVec2, frame: Frame, model: &CostModel) -> f64 {
+    let (low, high) = frame.bounds();
     let degree = [counts.len() as u32 - 1, counts[0] - 1];
     let nodes = |k: usize| 2.0 * NODES * f64::from(degree[k].max(1)) * (high - low)[k] / period[k] + 4.0;
     let size =
         cost::Size { terms: counts.iter().map(|&count| f64::from(count)).sum(), degree, nodes: [nodes(0), nodes(1)] };
     let series = [Evaluator::Series, Evaluator::Rows, Evaluator::Grid];
-    series.into_iter().map(|evaluator| cost::field(evaluator, &size, request)).fold(f64::INFINITY, f64::min)
+    series.into_iter().map(|evaluator| cost::field(evaluator, &size, frame, model)).fold(f64::INFINITY, f64::min)
 }

@@ -3,10 +3,16 @@
 use std::f64::consts::PI;
 
 use super::amplitudes::Amplitudes;
+use super::candidate::Survey;
 use super::*;
 use crate::chance::Chance;
+use crate::frame::Frame;
 use crate::reference;
 use crate::series::{Bell, Modes};
+
+fn plan(ghosts: &[Ghost], frame: Frame, request: &Request) -> Result<Plan> {
+    super::plan(&Problem::new(ghosts, frame), request)
+}
 
 fn ghost(center: [f64; 2], size: [f64; 2]) -> Ghost {
     Ghost { bell: Bell::Gaussian, center: center.into(), size: size.into(), radiance: [1.0; 3] }
@@ -17,12 +23,12 @@ fn the_truncation_bound_is_reached_at_the_centre_of_a_ghost() {
     // One ghost on a pixel's centre: all that is left out has one sign there, so the bound is the error.
     let ghosts = [ghost([0.0, 0.0], [0.3, 0.2])];
     for tolerance in [1e-2, 1e-3, 1e-4] {
-        let request = Request { evaluator: Some(Evaluator::Rows), ..Request::new(Frame::full(33, 19), tolerance) };
-        let plan = plan(&ghosts, &request).unwrap();
+        let request = Request { evaluator: Some(Evaluator::Rows), ..Request::new(tolerance) };
+        let plan = plan(&ghosts, Frame::full(33, 19), &request).unwrap();
         let highest = [200, 200];
         let rectangle = vec![highest[1] + 1; highest[0] as usize + 1];
-        let whole = reference::series(&ghosts, plan.period, &rectangle, DVec2::ZERO)[0];
-        let cut = reference::series(&ghosts, plan.period, &plan.counts, DVec2::ZERO)[0];
+        let whole = reference::series(&ghosts, plan.period(), &rectangle, DVec2::ZERO)[0];
+        let cut = reference::series(&ghosts, plan.period(), &plan.counts(), DVec2::ZERO)[0];
         let ratio = (whole - cut) / plan.predicted.truncation;
         assert!((0.999..1.000_001).contains(&ratio), "{tolerance:e}: {ratio}");
     }
@@ -33,24 +39,24 @@ fn the_interpolation_bound_holds_for_a_lattice_evaluated_in_f64() {
     let ghosts = [ghost([0.1, 0.0], [0.3, 0.2]), ghost([-0.7, 0.3], [0.5, 0.4])];
     for tolerance in [1e-1, 1e-2, 1e-3] {
         let frame = Frame::full(160, 90);
-        let request = Request { evaluator: Some(Evaluator::Grid), ..Request::new(frame, tolerance) };
-        let plan = plan(&ghosts, &request).unwrap();
-        let lattice = plan.lattice.unwrap();
+        let request = Request { evaluator: Some(Evaluator::Grid), ..Request::new(tolerance) };
+        let plan = plan(&ghosts, frame, &request).unwrap();
+        let lattice = plan.lattice().unwrap();
         // A row through the ghosts: along x the spline meets cos of n x and sin of n x, one harmonic after the other.
-        let theta = 2.0 * PI * lattice.step.x / plan.period.x;
+        let theta = 2.0 * PI * lattice.step.x / plan.period().x;
         let field = |x: f64, gained: bool| -> f64 {
             let one = |ghost: &Ghost| {
                 let Modes::Product(factor) = ghost.bell.shape().modes() else { unreachable!("a Gaussian") };
-                let coefficients = factor.coefficients(plan.degree[0], ghost.size.x / plan.period.x);
+                let coefficients = factor.coefficients(plan.degree()[0], ghost.size.x / plan.period().x);
                 let term = |n: u32| {
                     let half = 0.5 * f64::from(n) * theta;
                     let gain = if gained && n > 0 { (half / half.sin()).powi(4) } else { 1.0 };
                     let weight = if n == 0 { 1.0 } else { 2.0 };
                     gain * weight
                         * coefficients[n as usize][0]
-                        * (2.0 * PI * f64::from(n) * (x - ghost.center.x) / plan.period.x).cos()
+                        * (2.0 * PI * f64::from(n) * (x - ghost.center.x) / plan.period().x).cos()
                 };
-                (0..=plan.degree[0]).map(term).sum::<f64>()
+                (0..=plan.degree()[0]).map(term).sum::<f64>()
             };
             ghosts.iter().map(one).sum()
         };
@@ -76,12 +82,12 @@ fn groups_hold_every_kept_ghost_once_and_sizes_within_half_an_octave() {
         let size = 0.05 * 1.07f64.powi(k);
         ghosts.push(ghost([0.01 * f64::from(k), 0.0], [size, 0.3]));
     }
-    let plan = plan(&ghosts, &Request::new(Frame::full(64, 36), 1e-2)).unwrap();
-    let mut members: Vec<u32> = plan.groups.iter().flat_map(|group| group.members.iter().copied()).collect();
+    let plan = plan(&ghosts, Frame::full(64, 36), &Request::new(1e-2)).unwrap();
+    let mut members: Vec<u32> = plan.groups().flat_map(|group| group.members.iter().copied()).collect();
     members.sort_unstable();
     assert!(members.windows(2).all(|pair| pair[0] < pair[1]), "no ghost twice");
     assert_eq!(members.len() + plan.dropped, ghosts.len());
-    for group in &plan.groups {
+    for group in plan.groups() {
         let sizes = group.members.iter().map(|&index| ghosts[index as usize].size.x);
         let (low, high) = sizes.fold((f64::INFINITY, 0.0f64), |(low, high), size| (low.min(size), high.max(size)));
         assert!(high / low <= 2f64.sqrt() * (1.0 + 1e-12), "{low} to {high}");
@@ -92,8 +98,8 @@ fn groups_hold_every_kept_ghost_once_and_sizes_within_half_an_octave() {
 #[test]
 fn the_direct_sum_knows_how_far_f32_shifts_a_small_bell() {
     let request = |ghosts: &[Ghost]| {
-        let request = Request { evaluator: Some(Evaluator::Direct), ..Request::new(Frame::full(65, 37), 0.5) };
-        plan(ghosts, &request).unwrap().predicted.single()
+        let request = Request { evaluator: Some(Evaluator::Direct), ..Request::new(0.5) };
+        plan(ghosts, Frame::full(65, 37), &request).unwrap().predicted.single()
     };
     let frame = Frame::full(65, 37);
     let pixel = frame.position(60.0, 3.0).to_array();
@@ -110,13 +116,13 @@ fn a_given_oversampling_is_taken_and_its_bound_falls_with_the_fourth_power() {
             period: Some(DVec2::new(6.0, 5.0)),
             degree: Some([24, 30]),
             oversampling: Some(nodes),
-            ..Request::new(Frame::full(160, 90), 1e-3)
+            ..Request::new(1e-3)
         };
-        plan(&ghosts, &request)
+        plan(&ghosts, Frame::full(160, 90), &request)
     };
     let [coarse, fine] = [4.0, 8.0].map(|nodes| of(nodes).unwrap());
-    assert_eq!(coarse.lattice.unwrap().oversampling, DVec2::splat(4.0));
-    assert_eq!(fine.lattice.unwrap().step * 2.0, coarse.lattice.unwrap().step);
+    assert_eq!(coarse.lattice().unwrap().oversampling, DVec2::splat(4.0));
+    assert_eq!(fine.lattice().unwrap().step * 2.0, coarse.lattice().unwrap().step);
     let ratio = coarse.predicted.interpolation / fine.predicted.interpolation;
     assert!((14.0..18.0).contains(&ratio), "{ratio}");
     // A spline needs more than one node a half wave; a lattice can be too large.
@@ -129,8 +135,8 @@ fn a_given_oversampling_is_taken_and_its_bound_falls_with_the_fourth_power() {
 fn amplitudes_of(ghosts: &[Ghost]) -> (Amplitudes, Vec<u32>, DVec2) {
     let period = DVec2::new(8.0, 6.0);
     // So wide that none is dropped.
-    let request = Request { period: Some(period), ..Request::new(Frame::full(320, 36), 1e-6) };
-    let mut survey = Survey::new(ghosts, &request);
+    let request = Request { period: Some(period), ..Request::new(1e-6) };
+    let mut survey = Survey::new(&Problem::new(ghosts, Frame::full(320, 36)), &request);
     let counts = terms::rectangle(&mut survey.groups, [12, 8]);
     let amplitudes = Amplitudes::new(ghosts, &survey.groups, &counts, period, [1.0; 3]).unwrap();
     (amplitudes, counts, period)
@@ -191,7 +197,8 @@ fn amplitudes_know_which_ghosts_add_up_and_which_cancel() {
 #[test]
 fn too_many_ghosts_for_their_modes_are_not_looked_at() {
     let ghosts = vec![ghost([0.1, 0.1], [0.3, 0.3]); 80_000];
-    let mut survey = Survey::new(&ghosts, &Request::new(Frame::full(64, 36), 1e-3));
+    let problem = Problem::new(ghosts.as_slice(), Frame::full(64, 36));
+    let mut survey = Survey::new(&problem, &Request::new(1e-3));
     let counts = terms::rectangle(&mut survey.groups, [12, 8]);
     assert!(Amplitudes::new(&ghosts, &survey.groups, &counts, DVec2::ONE, [1.0; 3]).is_none());
 }
@@ -210,8 +217,8 @@ fn just_above_the_floor_there_is_a_plan_within_the_tolerance() {
             .collect();
         for evaluator in [Evaluator::Series, Evaluator::Rows, Evaluator::Grid] {
             let at = |tolerance| {
-                let request = Request::new(Frame::full(115, 58), tolerance);
-                plan(&ghosts, &Request { evaluator: Some(evaluator), ..request })
+                let request = Request::new(tolerance);
+                plan(&ghosts, Frame::full(115, 58), &Request { evaluator: Some(evaluator), ..request })
             };
             let floor = match at(1e-8) {
                 Err(Error::ToleranceBelowFloor { floor, .. }) => floor,

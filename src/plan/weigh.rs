@@ -3,8 +3,9 @@
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::{Request, share};
+use super::share;
 use crate::frame::Frame;
+use crate::problem::Problem;
 use crate::scene::Ghost;
 use crate::series::Shape;
 
@@ -37,9 +38,18 @@ pub(super) struct Weighed {
     pub dropped_error: f64,
 }
 
+/// A ghost's radiance in units of the scale.
+///
+/// The plan drops what is brighter than f32 holds, because too little of it reaches the picture; but a ghost may be kept
+/// for another of its colours.
+pub(crate) fn weight(ghost: &Ghost, scale: [f64; 3]) -> [f64; 3] {
+    const BRIGHTEST: f64 = 1e36;
+    [0, 1, 2].map(|colour| (ghost.radiance[colour] / scale[colour]).clamp(-BRIGHTEST, BRIGHTEST))
+}
+
 /// Weighs the ghosts against the picture.
-pub(super) fn weigh(ghosts: &[Ghost], request: &Request) -> Weighed {
-    let frame = request.frame;
+pub(super) fn weigh(problem: &Problem, tolerance: f64) -> Weighed {
+    let (ghosts, frame) = (problem.ghosts(), problem.frame());
     let seen = |ghost| {
         let offset = nearest_offset(ghost, frame);
         (offset, reached(ghost, offset.abs()))
@@ -47,13 +57,13 @@ pub(super) fn weigh(ghosts: &[Ghost], request: &Request) -> Weighed {
     let (nearest, shares): (Vec<DVec2>, Vec<f64>) = ghosts.par_iter().map(seen).unzip();
     let peaks = probes(ghosts, &shares, frame);
     let points: Vec<DVec2> = peaks.iter().map(|&[i, j]| frame.position(f64::from(i), f64::from(j))).collect();
-    let scale = scale(ghosts, &shares, &points, request.tolerance);
+    let scale = scale(ghosts, &shares, &points, tolerance);
     let weighed = |(ghost, share): (&Ghost, &f64)| {
         let weight = peak_weight(ghost, scale);
         (weight, weight * share)
     };
     let (mut weights, reached): (Vec<f64>, Vec<f64>) = ghosts.par_iter().zip(&shares).map(weighed).unzip();
-    let (dropped, dropped_error) = drop_faint(&mut weights, &reached, share::DROPPED * request.tolerance);
+    let (dropped, dropped_error) = drop_faint(&mut weights, &reached, share::DROPPED * tolerance);
     let weight = weights.iter().sum();
     Weighed { scale, peaks, weights, weight, nearest, dropped, dropped_error }
 }

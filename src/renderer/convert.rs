@@ -6,8 +6,8 @@ use super::settings::Settings;
 use crate::choices::Normalize;
 use crate::gpu::composite::{Composite, Variant};
 use crate::gpu::field::Source;
-use crate::gpu::layout::{DirectGhost, SpectralGhost};
-use crate::plan::{Evaluator, Group, Plan, Transform};
+use crate::gpu::layout::{DirectGhost, DoubleGhost, SpectralGhost};
+use crate::plan::{self, Evaluator, Group, Modes, Plan, Precision, Series, Transform};
 use crate::scene::Ghost;
 use crate::series::moments::{Cells, Point, Sums};
 use crate::series::{Bell, phase};
@@ -15,20 +15,19 @@ use crate::series::{Bell, phase};
 /// The GLSL function that a plan's evaluator has readied, `direct` beside it where some ghosts are summed; there may be too
 /// many of them for a uniform block.
 pub(super) fn source(plan: &Plan, many_ghosts: bool) -> Source {
-    let series = match plan.evaluator {
-        Evaluator::Direct => {
-            let evaluator = "\"evaluators/direct.glsl\"";
-            return Source { evaluator, series: None, bell: Some(bell_file(plan)), many_ghosts };
-        }
+    let double = plan.precision == Precision::Double;
+    let direct = if double { "\"evaluators/direct_double.glsl\"" } else { "\"evaluators/direct.glsl\"" };
+    let summed = |evaluator| Source { bell: Some(bell_file(plan)), many_ghosts, double, ..Source::of(evaluator) };
+    let series = match plan.evaluator() {
+        Evaluator::Direct => return summed(direct),
         Evaluator::Series => "\"evaluators/series.glsl\"",
         Evaluator::Rows => "\"evaluators/rows.glsl\"",
         Evaluator::Grid => "\"evaluators/grid.glsl\"",
     };
     if plan.summed() == 0 {
-        return Source { evaluator: series, series: None, bell: None, many_ghosts: false };
+        return Source::of(series);
     }
-    let evaluator = "\"evaluators/split.glsl\"";
-    Source { evaluator, series: Some(series), bell: Some(bell_file(plan)), many_ghosts }
+    Source { parts: Some([series, direct]), ..summed("\"evaluators/split.glsl\"") }
 }
 
 /// The one bell that the summed ghosts have, or all of them.
@@ -61,12 +60,12 @@ pub(super) fn normalize(settings: &Settings) -> &'static str {
 }
 
 /// The members of a group, as the spectrum takes them.
-pub(super) fn spectral_ghosts(ghosts: &[Ghost], plan: &Plan, members: &[u32]) -> Vec<SpectralGhost> {
+pub(super) fn spectral_ghosts(plan: &Plan, period: DVec2, members: &[u32]) -> Vec<SpectralGhost> {
     let convert = |&index: &u32| {
-        let ghost = &ghosts[index as usize];
-        let size = ghost.size / plan.period;
+        let ghost = &plan.problem().ghosts()[index as usize];
+        let size = ghost.size / period;
         SpectralGhost {
-            phase: [phase(ghost.center.x, plan.period.x), phase(ghost.center.y, plan.period.y)],
+            phase: [phase(ghost.center.x, period.x), phase(ghost.center.y, period.y)],
             size: [size.x as f32, size.y as f32],
             weight: weight(ghost, plan).map(|weight| weight as f32),
             pad: 0.0,
@@ -76,17 +75,17 @@ pub(super) fn spectral_ghosts(ghosts: &[Ghost], plan: &Plan, members: &[u32]) ->
 }
 
 /// The sums over the ghosts of a group, gathered from the moments of cells.
-pub(super) fn gathered(ghosts: &[Ghost], plan: &Plan, group: &Group, cells: &Cells) -> Vec<Sums> {
+pub(super) fn gathered(plan: &Plan, period: DVec2, group: &Group, cells: &Cells) -> Vec<Sums> {
     let point = |k: usize| {
-        let ghost = &ghosts[group.members[k] as usize];
-        let turns = ghost.center / plan.period;
+        let ghost = &plan.problem().ghosts()[group.members[k] as usize];
+        let turns = ghost.center / period;
         Point { turns: (turns - turns.floor()).to_array(), weight: weight(ghost, plan) }
     };
     cells.sums(group.members.len(), point, group.degree)
 }
 
 /// The ghosts that the plan sums directly, as the shader takes them, and the parameters of their bells.
-pub(super) fn direct_ghosts(ghosts: &[Ghost], plan: &Plan) -> (Vec<DirectGhost>, Vec<[f32; 4]>) {
+pub(super) fn direct_ghosts<G>(plan: &Plan, convert: impl Fn(&Ghost, [f64; 3], u32) -> G) -> (Vec<G>, Vec<[f64; 4]>) {
     let several = one_kind(plan).is_none();
     let mut shapes = Vec::new();
     // Where the parameters of the bells begin; there are only ever a few that have any.
@@ -104,27 +103,43 @@ pub(super) fn direct_ghosts(ghosts: &[Ghost], plan: &Plan) -> (Vec<DirectGhost>,
         };
         let bell = begin | if several { group.bell.kind() << 24 } else { 0 };
         direct.extend(group.members.iter().map(|&index| {
-            let ghost = &ghosts[index as usize];
-            // Finite, so that no bell is asked for 0 · ∞ at its centre.
-            let inverse = (1.0 / ghost.size).min(DVec2::splat(f64::from(f32::MAX)));
-            DirectGhost {
-                center: [ghost.center.x as f32, ghost.center.y as f32],
-                inverse_size: [inverse.x as f32, inverse.y as f32],
-                weight: weight(ghost, plan).map(|weight| weight as f32),
-                bell,
-            }
+            let ghost = &plan.problem().ghosts()[index as usize];
+            convert(ghost, weight(ghost, plan), bell)
         }));
     }
     (direct, shapes)
 }
 
+/// A ghost in 32-bit floats.
+pub(super) fn single_ghost(ghost: &Ghost, weight: [f64; 3], bell: u32) -> DirectGhost {
+    // Finite, so that no bell is asked for 0 · ∞ at its centre.
+    let inverse = (1.0 / ghost.size).min(DVec2::splat(f64::from(f32::MAX)));
+    DirectGhost {
+        center: [ghost.center.x as f32, ghost.center.y as f32],
+        inverse_size: [inverse.x as f32, inverse.y as f32],
+        weight: weight.map(|weight| weight as f32),
+        bell,
+    }
+}
+
+/// A ghost as it is.
+pub(super) fn double_ghost(ghost: &Ghost, weight: [f64; 3], bell: u32) -> DoubleGhost {
+    DoubleGhost { center: ghost.center.to_array(), size: ghost.size.to_array(), weight, bell, pad: 0 }
+}
+
 /// The coefficients that the ghosts of a group share, as the spectrum takes them; none where each has its own.
-pub(super) fn table(plan: &Plan, group: &Group) -> Option<Vec<[f32; 4]>> {
+pub(super) fn table(series: &Series, group: &Group) -> Option<Vec<[f32; 4]>> {
     let shape = group.bell.shape();
     let single = |coefficient: [f64; 4]| coefficient.map(|x| x as f32);
-    let table = || shape.modes().table(&plan.counts, group.smallest / plan.period);
+    let table = || shape.modes().table(&series.counts, group.smallest / series.period);
     let tabulated = shape.tabulated() || group.transform != Transform::Dispatch;
     tabulated.then(|| table().into_iter().map(single).collect())
+}
+
+/// The modes that the series keeps of those that the plan has computed, as the spectrum has them: three vec4 a mode.
+pub(super) fn terms(series: &Series, modes: &Modes) -> Vec<[f32; 4]> {
+    let single = |value: f64| value.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
+    modes.kept(&series.counts).flatten().map(|term| term.map(single)).collect()
 }
 
 /// The composite's uniforms.
@@ -143,8 +158,5 @@ pub(super) fn uniforms(plan: &Plan, settings: &Settings) -> Composite {
 }
 
 fn weight(ghost: &Ghost, plan: &Plan) -> [f64; 3] {
-    // The plan drops what is brighter, because too little of it reaches the picture; but a ghost may be kept for another
-    // of its colours.
-    const BRIGHTEST: f64 = 1e36;
-    [0, 1, 2].map(|colour| (ghost.radiance[colour] / plan.scale[colour]).clamp(-BRIGHTEST, BRIGHTEST))
+    plan::weight(ghost, plan.scale)
 }

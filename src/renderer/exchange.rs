@@ -1,7 +1,7 @@
 //! The photo's way to the device and the picture's way back: straight, or through pixel buffers, so that the CPU does
 //! not wait while a tile is under way.
 
-use super::{Renderer, offset};
+use super::{Picture, offset};
 use crate::frame::{Frame, Window};
 use crate::gpu::pixels::PixelBuffer;
 use crate::{Error, Result};
@@ -31,13 +31,13 @@ struct UnderWay {
     tile: Window,
 }
 
-impl Renderer {
+impl Picture {
     /// Whether pictures go through pixel buffers from now on. By default they do unless the renderer is software.
     pub fn set_pixel_buffers(&mut self, buffered: bool) {
         self.exchange = Exchange::new(buffered);
     }
 
-    /// Puts the photo of a frame that is small enough for one tile on the device, for [`Renderer::draw`].
+    /// Puts the photo of a frame that is small enough for one tile on the device, for [`Picture::draw`].
     ///
     /// # Errors
     /// [`Error::Gl`] where the frame is too large for one tile, or the driver refuses.
@@ -47,7 +47,7 @@ impl Renderer {
         self.upload(frame, tile, pixels)
     }
 
-    /// Brings back what [`Renderer::draw`] left on the device, of a frame that is small enough for one tile.
+    /// Brings back what [`Picture::draw`] left on the device, of a frame that is small enough for one tile.
     ///
     /// # Errors
     /// [`Error::Gl`] where the frame is too large for one tile, nothing was drawn, or the driver refuses.
@@ -58,7 +58,7 @@ impl Renderer {
         self.collect(pending, pixels)
     }
 
-    /// Waits for what [`Renderer::submit`] left under way, and puts it among the same pixels.
+    /// Waits for what [`Picture::submit`] left under way, and puts it among the same pixels.
     ///
     /// # Errors
     /// [`Error::Gl`] where the device failed meanwhile.
@@ -66,13 +66,13 @@ impl Renderer {
         let Pending(Some(UnderWay { mut buffer, window, tile })) = pending else { return Ok(()) };
         assert_eq!(pixels.len(), window.pixels(), "the pixels that were submitted");
         let (at, stride) = (offset(window, tile), window.width as usize);
-        self.runner.run("readback", || buffer.drain(&mut pixels[at..], stride, tile.width, tile.height))?;
+        self.field.runner.run("readback", || buffer.drain(&mut pixels[at..], stride, tile.width, tile.height))?;
         self.exchange.spare.push(buffer);
         Ok(())
     }
 
     fn only_tile(&self, frame: Frame) -> Result<Window> {
-        match self.tiles(frame.window)[..] {
+        match self.field.tiles(frame.window)[..] {
             [tile] => Ok(tile),
             _ => Err(Error::Gl("the picture does not fit one tile".into())),
         }
@@ -82,16 +82,16 @@ impl Renderer {
     pub(super) fn upload(&mut self, frame: Frame, tile: Window, pixels: &[[f32; 4]]) -> Result<()> {
         let (at, stride) = (offset(frame.window, tile), frame.window.width as usize);
         let (pixels, width, height) = (&pixels[at..], tile.width, tile.height);
-        let photo = self.composite.photo(&self.runner, width, height)?;
+        let photo = self.composite.photo(&self.field.runner, width, height)?;
         if !self.exchange.buffered {
-            self.runner.run("upload", || photo.write(pixels, stride, width, height));
+            self.field.runner.run("upload", || photo.write(pixels, stride, width, height));
             return Ok(());
         }
         let up = match &mut self.exchange.up {
             Some(up) => up,
-            none => none.insert(PixelBuffer::new(self.runner.device())?),
+            none => none.insert(PixelBuffer::new(self.field.runner.device())?),
         };
-        self.runner.run("upload", || {
+        self.field.runner.run("upload", || {
             up.fill(pixels, stride, width, height)?;
             photo.write_from(up, width, height);
             Ok(())
@@ -104,14 +104,14 @@ impl Renderer {
         let picture = self.composite.drawn()?;
         if !self.exchange.buffered {
             let (at, stride) = (offset(window, tile), window.width as usize);
-            self.runner.run("readback", || picture.read(&mut pixels[at..], stride, width, height));
+            self.field.runner.run("readback", || picture.read(&mut pixels[at..], stride, width, height));
             return Ok(Pending::default());
         }
         let mut buffer = match self.exchange.spare.pop() {
             Some(buffer) => buffer,
-            None => PixelBuffer::new(self.runner.device())?,
+            None => PixelBuffer::new(self.field.runner.device())?,
         };
-        self.runner.run("readback", || picture.read_to(&mut buffer, width, height))?;
+        self.field.runner.run("readback", || picture.read_to(&mut buffer, width, height))?;
         Ok(Pending(Some(UnderWay { buffer, window, tile })))
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::Renderer;
+use super::Live;
 use crate::Result;
 use crate::gpu::mask::Mask as Uniforms;
 use crate::gpu::{Region, Screen};
@@ -30,13 +30,13 @@ pub struct Mask {
     pub pitch: f64,
 }
 
-impl Renderer {
+impl Live {
     /// Marks the pixels of the photo that are light in a region of the screen, and leaves the others as they are.
     ///
     /// # Errors
     /// [`crate::Error::Gl`] where no photo is loaded, or the driver refuses.
     pub fn mask(&mut self, mask: &Mask, screen: &Screen, region: Region) -> Result<()> {
-        let photo = self.composite.loaded()?;
+        let photo = self.picture.composite.loaded()?;
         // The shader counts from the screen's corner.
         let corner = DVec2::new(f64::from(region.x), f64::from(region.y));
         let uniforms = Uniforms {
@@ -50,6 +50,6 @@ impl Renderer {
             limit: mask.firefly_limit as f32,
             pad: [0; 3],
         };
-        self.mask.draw(&self.runner, photo, &uniforms, mask.emission.straight, screen, region)
+        self.mask.draw(&self.picture.field.runner, photo, &uniforms, mask.emission.straight, screen, region)
     }
 }

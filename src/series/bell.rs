@@ -103,8 +103,19 @@ pub trait Shape: Sync {
     /// A bound of what the copies of [`Shape::along`], `period` apart, add within `distance` < `period` of the centre.
     fn wrap(&self, period: f64, distance: f64, size: f64) -> f64;
 
-    /// How steep the bell is at most at an offset of at least `distance` sizes along an axis, for each size.
+    /// How steep the bell is at most at an offset of at least `distance` sizes along an axis, for each size; infinite where
+    /// it jumps.
     fn steepest(&self, distance: f64) -> f64;
+
+    /// The offset, in sizes, from which on along either axis the bell is nothing.
+    fn ends(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// Offsets in sizes, along an axis or the radius, at which the bell is steep or has a kink: where to look for errors.
+    fn edges(&self) -> Vec<f64> {
+        vec![1.0, 2.5]
+    }
 
     /// ∫∫ over the plane; over one period, for a periodic bell.
     fn integral(&self, size: DVec2) -> f64;
@@ -126,7 +137,7 @@ pub trait Shape: Sync {
     }
 
     /// What `bell_value` needs to know beside offset and size.
-    fn parameters(&self) -> Vec<[f32; 4]> {
+    fn parameters(&self) -> Vec<[f64; 4]> {
         Vec::new()
     }
 }
@@ -172,6 +183,17 @@ pub trait Radial: Sync {
     fn beyond(&self, z: f64, cell: f64) -> f64;
 }
 
+impl dyn Radial + '_ {
+    /// The mean coefficients of the kept modes, harmonic by harmonic of x, of a size in periods; without the weight κ.
+    pub fn means(&self, counts: &[u32], size: DVec2) -> Vec<f64> {
+        let turn = std::f64::consts::TAU * size;
+        let volume = size.element_product();
+        let frequency = |(n, m)| (turn * DVec2::new(f64::from(n), f64::from(m))).length();
+        let transforms = self.transforms(&modes(counts).map(frequency).collect::<Vec<_>>());
+        transforms.into_iter().map(|transform| volume * transform).collect()
+    }
+}
+
 impl Modes<'_> {
     /// The coefficients of the kept modes, harmonic by harmonic of x, of a size in periods: what stands before c_n c_m,
     /// s_n s_m, c_n s_m and s_n c_m in the bell's series about its centre, the weight κ included.
@@ -188,12 +210,8 @@ impl Modes<'_> {
                 modes(counts).map(|(n, m)| product(n as usize, m as usize)).collect()
             }
             Self::Radial(radial) => {
-                let turn = std::f64::consts::TAU * size;
-                let volume = size.element_product();
-                let frequency = |(n, m)| (turn * DVec2::new(f64::from(n), f64::from(m))).length();
-                let transforms = radial.transforms(&modes(counts).map(frequency).collect::<Vec<_>>());
-                let coefficient = |((n, m), transform)| [kappa(n, m) * volume * transform, 0.0, 0.0, 0.0];
-                modes(counts).zip(transforms).map(coefficient).collect()
+                let coefficient = |((n, m), mean)| [kappa(n, m) * mean, 0.0, 0.0, 0.0];
+                modes(counts).zip(radial.means(counts, size)).map(coefficient).collect()
             }
         }
     }

@@ -59,6 +59,14 @@ impl Shape for CosineSquared {
         if distance < 1.0 { FRAC_PI_2 } else { 0.0 }
     }
 
+    fn ends(&self) -> f64 {
+        1.0
+    }
+
+    fn edges(&self) -> Vec<f64> {
+        vec![0.5, 0.97]
+    }
+
     fn integral(&self, size: DVec2) -> f64 {
         size.element_product()
     }

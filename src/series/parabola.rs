@@ -44,6 +44,14 @@ impl Shape for Parabola {
         if distance < 1.0 { 2.0 } else { 0.0 }
     }
 
+    fn ends(&self) -> f64 {
+        1.0
+    }
+
+    fn edges(&self) -> Vec<f64> {
+        vec![0.97, 1.0]
+    }
+
     fn integral(&self, size: DVec2) -> f64 {
         16.0 / 9.0 * size.element_product()
     }

@@ -45,6 +45,14 @@ impl Shape for Paraboloid {
         if distance < 1.0 { 2.0 } else { 0.0 }
     }
 
+    fn ends(&self) -> f64 {
+        1.0
+    }
+
+    fn edges(&self) -> Vec<f64> {
+        vec![0.97, 1.0]
+    }
+
     fn integral(&self, size: DVec2) -> f64 {
         FRAC_PI_2 * size.element_product()
     }

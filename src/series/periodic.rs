@@ -163,9 +163,9 @@ impl<B: Periodic> Shape for B {
         Some(Periodic::period(self))
     }
 
-    fn parameters(&self) -> Vec<[f32; 4]> {
+    fn parameters(&self) -> Vec<[f64; 4]> {
         let frequency = 1.0 / Periodic::period(self);
-        vec![[frequency.x as f32, frequency.y as f32, self.parameter() as f32, 0.0]]
+        vec![[frequency.x, frequency.y, self.parameter(), 0.0]]
     }
 }
 

@@ -110,8 +110,11 @@ impl Profile {
             .collect();
         slopes.push(0.0);
         let reach = from_each_on(values.iter().map(|value| value.abs()).collect());
-        let steepest = (0..rows.len()).map(|i| 2.0 * slopes[i].abs() * radii.get(i + 1).unwrap_or(&0.0));
-        let steepest = from_each_on(steepest.collect());
+        let last = rows.len() - 1;
+        let steepest = (0..last).map(|i| 2.0 * slopes[i].abs() * radii[i + 1]);
+        // What does not end at 0 jumps.
+        let jump = if values[last] == 0.0 { 0.0 } else { f64::INFINITY };
+        let steepest = from_each_on(steepest.chain([jump]).collect());
         let mut profile = Self {
             radii,
             values,
@@ -287,7 +290,27 @@ impl Shape for Profile {
     }
 
     fn steepest(&self, distance: f64) -> f64 {
+        if distance > self.radius() {
+            return 0.0;
+        }
         self.steepest[self.radii[1..].partition_point(|&radius| radius <= distance)]
+    }
+
+    fn ends(&self) -> f64 {
+        self.radius()
+    }
+
+    /// Both ends of the steepest part and its middle, the sharpest kink, and where the profile ends.
+    fn edges(&self) -> Vec<f64> {
+        let steep = |&i: &usize| self.slopes[i].abs() * self.radii[i + 1];
+        let steepest = (0..self.radii.len() - 1).max_by(|a, b| steep(a).total_cmp(&steep(b))).unwrap_or(0);
+        let sharp = |(radius, kink): &(f64, f64)| kink.abs() * radius;
+        let sharpest = self.kinks().max_by(|a, b| sharp(a).total_cmp(&sharp(b))).map_or(0.0, |(radius, _)| radius);
+        let [near, far] = [self.radii[steepest], self.radii[steepest + 1]];
+        let mut edges = vec![near, 0.5 * (near + far), far, sharpest, self.radius()];
+        edges.sort_unstable_by(f64::total_cmp);
+        edges.dedup();
+        edges
     }
 
     fn integral(&self, size: DVec2) -> f64 {
@@ -302,11 +325,11 @@ impl Shape for Profile {
         Modes::Radial(self)
     }
 
-    /// How many rows there are; then for each its r², its value, and the slope to the next.
-    fn parameters(&self) -> Vec<[f32; 4]> {
-        let mut table = vec![[self.radii.len() as f32, 0.0, 0.0, 0.0]];
+    /// How many rows there are; then for each its r², its value, the slope to the next, and r.
+    fn parameters(&self) -> Vec<[f64; 4]> {
+        let mut table = vec![[self.radii.len() as f64, 0.0, 0.0, 0.0]];
         let rows = self.radii.iter().zip(&self.values).zip(&self.slopes);
-        table.extend(rows.map(|((r, value), slope)| [(r * r) as f32, *value as f32, *slope as f32, 0.0]));
+        table.extend(rows.map(|((r, value), slope)| [r * r, *value, *slope, *r]));
         table
     }
 }

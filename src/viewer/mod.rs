@@ -2,6 +2,7 @@
 //!
 //! | file | what it does |
 //! | --- | --- |
+//! | [`command`] | `vglare view` |
 //! | `window` | winit's events, the surface, when to draw; nothing else knows of a window |
 //! | `app` | [`App`]: what is open, and one frame of it, with or without a window |
 //! | `document` | an open photo: its pixels, its look, how it is looked at |
@@ -28,6 +29,7 @@
 mod app;
 mod ask;
 mod canvas;
+pub mod command;
 mod control;
 mod dialog;
 mod document;

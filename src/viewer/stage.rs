@@ -16,7 +16,8 @@ use crate::gpu::{Device, Region, Screen};
 use crate::job::{self, Known};
 use crate::look::Gathered;
 use crate::plan::Plan;
-use crate::renderer::{Mask, Part, Renderer, Settings, View};
+use crate::problem::Problem;
+use crate::renderer::{Live, Mask, Part, Settings, View};
 use crate::scene::{Emission, Goal};
 use crate::{Error, Result};
 
@@ -81,7 +82,7 @@ struct Shown {
 
 /// Renders the current document.
 pub struct Stage {
-    renderer: Renderer,
+    live: Live,
     /// The canvas as it was last drawn: where only a panel changes, it is copied.
     canvas: Option<(Screen, Shown)>,
     made: Made,
@@ -101,7 +102,7 @@ impl Stage {
     /// [`crate::Error::Gl`] where the driver refuses.
     pub fn new(device: &Rc<Device>, wake: Wake) -> Result<Self> {
         Ok(Self {
-            renderer: Renderer::new(device)?,
+            live: Live::new(device)?,
             canvas: None,
             made: Made::default(),
             known: Known::of(device.info()),
@@ -121,8 +122,8 @@ impl Stage {
     pub fn update(&mut self, number: u64, document: &Document, preview: bool) -> Result<()> {
         if self.made.document != Some(number) {
             self.made = Made::default();
-            self.renderer.forget_scene();
-            self.renderer.load(document.frame, document.pixels())?;
+            self.live.picture.field.forget_scene();
+            self.live.picture.load(document.frame, document.pixels())?;
             self.counts.uploads += 1;
             self.made.document = Some(number);
         }
@@ -170,14 +171,15 @@ impl Stage {
         self.made.look = Some(look.clone());
         if document.viewing.without_constant {
             let constant = &mut self.made.constant;
-            settings.constant = *constant.get_or_insert_with(|| self.renderer.constant_term().unwrap_or_default());
+            settings.constant =
+                *constant.get_or_insert_with(|| self.live.picture.field.constant_term().unwrap_or_default());
         }
         if self.made.picture == Some((settings, shows)) {
             return Ok(());
         }
         let started = Instant::now();
         // The settings may well change again while the field stays.
-        self.renderer.hold_field(self.made.frame.unwrap_or(document.frame))?;
+        self.live.picture.field.hold(self.made.frame.unwrap_or(document.frame))?;
         (self.made.picture, self.made.drawn) = (Some((settings, shows)), false);
         if !settings.is_affine() {
             self.draw_picture(document)?;
@@ -191,8 +193,8 @@ impl Stage {
     fn draw_picture(&mut self, document: &Document) -> Result<()> {
         let Some((settings, shows)) = self.made.picture.filter(|_| !self.made.drawn) else { return Ok(()) };
         match shows {
-            Shows::Glare => self.renderer.draw_glare(document.frame, &settings)?,
-            Shows::Picture | Shows::Photo => self.renderer.draw(document.frame, &settings)?,
+            Shows::Glare => self.live.picture.draw_glare(document.frame, &settings)?,
+            Shows::Picture | Shows::Photo => self.live.picture.draw(document.frame, &settings)?,
         }
         self.made.drawn = true;
         Ok(())
@@ -202,11 +204,12 @@ impl Stage {
     fn update_field(&mut self, frame: Frame, look: &Look) -> Result<()> {
         let Some(scene) = &self.made.scene else { return Ok(()) };
         let started = Instant::now();
-        let device = self.renderer.device().info();
-        let planned = job::plan(&look.accuracy, &scene.ghosts, frame, Some(device), self.known.clone())?;
+        let device = self.live.picture.field.device().info();
+        let problem = Problem::new(scene.ghosts.clone(), frame);
+        let planned = job::plan(&look.accuracy, &problem, Some(device), self.known.clone())?;
         self.times.plan = started.elapsed().as_secs_f64() * 1e3;
         let started = Instant::now();
-        self.renderer.set_scene(&scene.ghosts, &planned.plan)?;
+        self.live.picture.field.set_scene(&planned.plan)?;
         self.times.spectrum = self.elapsed(started);
         self.counts.spectra += 1;
         self.made.constant = None;
@@ -217,8 +220,8 @@ impl Stage {
 
     fn elapsed(&self, started: Instant) -> f64 {
         // A graphics card goes on by itself, and must not be waited for.
-        if self.renderer.device().info().software {
-            self.renderer.finish();
+        if self.live.picture.field.device().info().software {
+            self.live.picture.field.finish();
         }
         started.elapsed().as_secs_f64() * 1e3
     }
@@ -250,7 +253,7 @@ impl Stage {
             Some((canvas, was)) if was == shown && canvas.size() == size => canvas,
             old => {
                 let reused = old.map(|(canvas, _)| canvas).filter(|canvas| canvas.size() == size);
-                let canvas = reused.map_or_else(|| Screen::hidden(self.renderer.device(), size), Ok)?;
+                let canvas = reused.map_or_else(|| Screen::hidden(self.live.picture.field.device(), size), Ok)?;
                 self.draw(document, &view, &canvas, canvas.whole())?;
                 canvas
             }
@@ -276,7 +279,7 @@ impl Stage {
             origin: placement.origin,
             pitch: placement.pitch,
         };
-        self.renderer.mask(&mask, screen, placement.region)
+        self.live.mask(&mask, screen, placement.region)
     }
 
     /// Looks into the picture as the document wants it, unless it is a preview or `moving`. Says whether there is news
@@ -286,20 +289,20 @@ impl Stage {
     /// [`crate::Error::Gl`] where the driver refuses.
     pub fn study(&mut self, document: &Document, moving: bool, context: &egui::Context) -> Result<(bool, bool)> {
         let news = self.study.take_in(context)?;
-        let (Some(plan), Some(scene), Some(_)) = (&self.plan, &self.made.scene, &self.made.look) else {
+        let (Some(plan), Some(_), Some(_)) = (&self.plan, &self.made.scene, &self.made.look) else {
             return Ok((news, false));
         };
-        let picture = Picture { number: self.counts.spectra, ghosts: &scene.ghosts, plan, frame: document.frame };
+        let picture = Picture { number: self.counts.spectra, plan };
         self.study.forget_others(picture.number);
         let wanted = &document.viewing.wanted;
-        if self.made.preview || !self.study.is_due(picture.number, wanted, picture.frame) {
+        if self.made.preview || !self.study.is_due(picture.number, wanted, picture.plan.problem().frame()) {
             return Ok((news, false));
         }
         if moving {
             return Ok((news, true));
         }
         self.counts.studies += 1;
-        let known = self.study.begin(&picture, wanted, &mut self.renderer, context)?;
+        let known = self.study.begin(&picture, wanted, &mut self.live.picture.field, context)?;
         Ok((news || known, false))
     }
 
@@ -344,9 +347,9 @@ impl Stage {
             Some((settings, shows)) if !self.made.drawn => {
                 let part = if shows == Shows::Glare { Part::Glare } else { Part::Picture };
                 let frame = self.made.frame.unwrap_or(document.frame);
-                self.renderer.view_mixed(frame, &settings, part, view, screen, region)
+                self.live.view_mixed(frame, &settings, part, view, screen, region)
             }
-            _ => self.renderer.view(view, screen, region),
+            _ => self.live.view(view, screen, region),
         }
     }
 
@@ -359,15 +362,15 @@ impl Stage {
             return Ok(None);
         }
         self.draw_picture(document)?;
-        Ok(self.renderer.pixel(column, row))
+        Ok(self.live.picture.pixel(column, row))
     }
 
     /// Leaves the stage empty, so that everything is computed anew.
     pub fn clear(&mut self) {
         self.made = Made::default();
         self.canvas = None;
-        self.renderer.unload();
-        self.renderer.forget_scene();
+        self.live.unload();
+        self.live.picture.field.forget_scene();
         self.plan = None;
     }
 

@@ -60,7 +60,7 @@ impl Status {
             photo: document.map(super::Document::name),
             lights: lights.iter().map(|light| light.position.to_array()).collect(),
             strength: document.map(|document| document.look.strength),
-            evaluator: app.plan().map(|plan| plan.evaluator),
+            evaluator: app.plan().map(|plan| plan.evaluator()),
             steps: document.map(super::Document::steps).unwrap_or_default(),
             busy: app.is_reading() || app.is_writing(),
             asks: app.asks(),

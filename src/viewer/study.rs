@@ -15,8 +15,7 @@ use crate::Result;
 use crate::certificate::{Certificate, Samples};
 use crate::frame::Frame;
 use crate::plan::Plan;
-use crate::renderer::Renderer;
-use crate::scene::Ghost;
+use crate::renderer::Field;
 
 pub use error_map::{DECADES, colour};
 pub use findings::{Cut, CutPoint, Degree, SPECTRUM_DECADES};
@@ -57,9 +56,7 @@ pub enum Plot {
 #[derive(Clone, Copy)]
 pub struct Picture<'a> {
     pub number: u64,
-    pub ghosts: &'a [Ghost],
     pub plan: &'a Plan,
-    pub frame: Frame,
 }
 
 /// What is known of the picture.
@@ -181,34 +178,35 @@ impl Study {
         &mut self,
         picture: &Picture<'_>,
         wanted: &Wanted,
-        renderer: &mut Renderer,
+        field: &mut Field,
         context: &Context,
     ) -> Result<bool> {
-        let &Picture { number, ghosts, plan, frame } = picture;
+        let &Picture { number, plan } = picture;
+        let frame = plan.problem().frame();
         if wanted.certificate && self.certificate.wants(&number) {
-            let samples = Samples::take(renderer, ghosts, plan, frame, plan.tolerance)?;
-            let ghosts = ghosts.to_vec();
-            self.certificate.begin(number, &self.wake, move || samples.certify(&ghosts));
+            let samples = Samples::take(field, plan)?;
+            self.certificate.begin(number, &self.wake, move || samples.certify());
         }
         if wanted.error_map
             && let Some(stride) = self.next_stride(number, frame)
         {
-            let map = error_map::Rendered::take(renderer, plan, frame, stride)?;
-            let ghosts = ghosts.to_vec();
-            self.error_map.begin((number, stride), &self.wake, move || map.image(&ghosts));
+            let map = error_map::Rendered::take(field, plan, frame, stride)?;
+            let problem = plan.problem().clone();
+            self.error_map.begin((number, stride), &self.wake, move || map.image(problem.ghosts()));
         }
         match wanted.plot {
             Plot::Section if self.section.wants(&(number, wanted.cut)) => {
-                let section = findings::Section::take(renderer, wanted.cut, frame)?;
-                let ghosts = ghosts.to_vec();
-                self.section.begin((number, wanted.cut), &self.wake, move || section.beside_truth(&ghosts));
+                let section = findings::Section::take(field, wanted.cut, frame)?;
+                let problem = plan.problem().clone();
+                let truth = move || section.beside_truth(problem.ghosts());
+                self.section.begin((number, wanted.cut), &self.wake, truth);
             }
             Plot::Convergence if self.convergence.wants(&number) => {
-                let (ghosts, plan) = (ghosts.to_vec(), plan.clone());
-                self.convergence.begin(number, &self.wake, move || findings::convergence(&ghosts, &plan, frame));
+                let plan = plan.clone();
+                self.convergence.begin(number, &self.wake, move || findings::convergence(&plan));
             }
             Plot::Spectrum if self.spectrum.as_ref().is_none_or(|(known, _)| *known != number) => {
-                let images = findings::spectrum_images(&renderer.spectrum_terms(), &plan.counts);
+                let images = findings::spectrum_images(&field.spectrum_terms(), plan.counts());
                 let load = |image| context.load_texture("spectrum", image, TextureOptions::NEAREST);
                 self.spectrum = Some((number, images.map(load)));
                 return Ok(true);

@@ -4,14 +4,14 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 use vglare::frame::Frame;
-use vglare::plan::{Evaluator, Request, plan};
+use vglare::plan::{Evaluator, Request};
 use vglare::reference;
 use vglare::scene::Ghost;
 use vglare::series::{Bell, Modes, SineGaussian, VonMises, windowed_gaussian};
 
 use crate::golden::{cases, coefficient, count, number};
 use crate::support::check::{Worst, within};
-use crate::support::{on_each_backend, scenes};
+use crate::support::{on_one_backend, plan, scenes};
 
 #[test]
 fn windowed_gaussian_coefficients_are_the_golden_ones() {
@@ -185,34 +185,30 @@ fn keeps_its_promise(name: &str, ghosts: &[Ghost], tolerances: &[f64]) {
     let mut cases = Vec::new();
     for evaluator in Evaluator::ALL {
         for &tolerance in tolerances {
-            let request = Request { evaluator: Some(evaluator), ..Request::new(frame, tolerance) };
-            let plan = plan(ghosts, &request).unwrap_or_else(|error| panic!("{name}, {evaluator}: {error}"));
+            let request = Request { evaluator: Some(evaluator), ..Request::new(tolerance) };
+            let plan = plan(ghosts, frame, &request).unwrap_or_else(|error| panic!("{name}, {evaluator}: {error}"));
             assert!(plan.predicted.total() <= tolerance, "{name}: {:?}", plan.predicted);
             let pixels = scenes::probes(11, ghosts, &plan, frame);
             let exact = reference::direct_at(ghosts, &scenes::positions(frame, &pixels));
             cases.push((evaluator, plan, pixels, exact));
         }
     }
-    let measured = on_each_backend(|backend, renderer| -> Vec<f64> {
+    let measured = on_one_backend(|backend, renderer| -> Vec<f64> {
         let one = |(evaluator, plan, pixels, exact): &(Evaluator, _, Vec<_>, Vec<_>)| {
-            renderer.set_scene(ghosts, plan).unwrap();
-            let actual = renderer.probe(frame, pixels).unwrap();
-            let case = format!("{backend}, {evaluator}, {name}, degree {:?}, {:?}", plan.degree, plan.predicted);
+            renderer.field.set_scene(plan).unwrap();
+            let actual = renderer.field.probe(frame, pixels).unwrap();
+            let case = format!("{backend}, {evaluator}, {name}, degree {:?}, {:?}", plan.degree(), plan.predicted);
             within(plan.predicted.total(), &case, pixels, exact, &actual).relative
         };
         cases.iter().map(one).collect()
     });
-    for ((evaluator, plan, ..), errors) in cases.iter().zip(transposed(&measured)) {
+    for ((evaluator, plan, ..), error) in cases.iter().zip(&measured) {
         println!(
-            "{name}, {evaluator}, degree {:?}: predicted {:.1e}, measured {errors:?}",
-            plan.degree,
+            "{name}, {evaluator}, degree {:?}: predicted {:.1e}, measured {error:.1e}",
+            plan.degree(),
             plan.predicted.total()
         );
     }
-}
-
-fn transposed(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    (0..rows[0].len()).map(|column| rows.iter().map(|row| row[column]).collect()).collect()
 }
 
 #[test]

@@ -1,11 +1,11 @@
 //! The photo with its glare: nothing but the glare is added, and a bad pixel harms only itself.
 
 use vglare::frame::Frame;
-use vglare::plan::{Evaluator, Plan, Request, plan};
-use vglare::renderer::{Normalize, Renderer, Settings};
-use vglare::scene::{Emission, Ghost};
+use vglare::plan::{Evaluator, Plan, Request};
+use vglare::renderer::{Normalize, Picture, Settings};
+use vglare::scene::Emission;
 
-use crate::support::{glare, on_each_backend, plan_with, scenes};
+use crate::support::{glare, on_each_backend, on_one_backend, plan, plan_with, scenes};
 
 const SIZE: [u32; 2] = [37, 23];
 
@@ -13,10 +13,8 @@ fn frame() -> Frame {
     Frame::full(SIZE[0], SIZE[1])
 }
 
-fn scene() -> (Vec<Ghost>, Plan) {
-    let ghosts = scenes::random(6, 12, frame());
-    let plan = plan_with(&ghosts, frame(), 1e-3, Evaluator::Rows);
-    (ghosts, plan)
+fn scene() -> Plan {
+    plan_with(&scenes::random(6, 12, frame()), frame(), 1e-3, Evaluator::Rows)
 }
 
 /// Values below nothing, beyond one and of every size.
@@ -29,7 +27,7 @@ fn photo() -> Vec<[f32; 4]> {
     (0..frame().window.pixels()).map(|i| [value(), value(), value(), i as f32 / 99.0]).collect()
 }
 
-fn composite(renderer: &mut Renderer, photo: &[[f32; 4]], settings: &Settings) -> Vec<[f32; 4]> {
+fn composite(renderer: &mut Picture, photo: &[[f32; 4]], settings: &Settings) -> Vec<[f32; 4]> {
     let mut picture = photo.to_vec();
     renderer.composite(frame(), &mut picture, settings).unwrap();
     picture
@@ -37,11 +35,11 @@ fn composite(renderer: &mut Renderer, photo: &[[f32; 4]], settings: &Settings) -
 
 #[test]
 fn the_picture_is_the_photo_and_the_glare() {
-    let (ghosts, plan) = scene();
+    let plan = scene();
     on_each_backend(|_, renderer| {
         for strength in [1.0, 0.3, -2.0, 0.0] {
             let settings = Settings { strength, ..Settings::default() };
-            renderer.set_scene(&ghosts, &plan).unwrap();
+            renderer.field.set_scene(&plan).unwrap();
             let added = renderer.glare(frame(), &settings).unwrap();
             let picture = composite(renderer, &photo(), &settings);
             for ((photo, added), picture) in photo().iter().zip(&added).zip(&picture) {
@@ -59,24 +57,24 @@ fn the_picture_is_the_photo_and_the_glare() {
 
 #[test]
 fn a_strength_of_nothing_leaves_every_value_as_it_is() {
-    let (ghosts, plan) = scene();
-    on_each_backend(|_, renderer| {
-        renderer.set_scene(&ghosts, &plan).unwrap();
+    let plan = scene();
+    on_one_backend(|_, renderer| {
+        renderer.field.set_scene(&plan).unwrap();
         assert_eq!(composite(renderer, &photo(), &Settings { strength: 0.0, ..Settings::default() }), photo());
     });
 }
 
 #[test]
 fn alpha_keeps_every_bit() {
-    let (ghosts, plan) = scene();
+    let plan = scene();
     let alphas =
         [0.0, -0.0, 1.0, 0.5, -3.0, 1e30, 1e-40, f32::MIN_POSITIVE, f32::INFINITY, f32::NEG_INFINITY, f32::NAN];
     let mut photo = photo();
     for (pixel, alpha) in photo.iter_mut().zip(alphas.into_iter().cycle()) {
         pixel[3] = alpha;
     }
-    on_each_backend(|backend, renderer| {
-        renderer.set_scene(&ghosts, &plan).unwrap();
+    on_one_backend(|backend, renderer| {
+        renderer.field.set_scene(&plan).unwrap();
         for light_gain in [[1.0; 3], [0.5; 3]] {
             let settings = Settings { threshold: 1.0, light_gain, ..Settings::default() };
             for (before, after) in photo.iter().zip(composite(renderer, &photo, &settings)) {
@@ -88,15 +86,15 @@ fn alpha_keeps_every_bit() {
 
 #[test]
 fn a_bad_pixel_harms_only_itself() {
-    let (ghosts, plan) = scene();
+    let plan = scene();
     let clean = photo();
     let mut photo = clean.clone();
     let bad = [(5, f32::NAN), (40, f32::INFINITY), (41, f32::NEG_INFINITY), (200, -1e30), (850, f32::MAX)];
     for (index, value) in bad {
         photo[index][1] = value;
     }
-    on_each_backend(|_, renderer| {
-        renderer.set_scene(&ghosts, &plan).unwrap();
+    on_one_backend(|_, renderer| {
+        renderer.field.set_scene(&plan).unwrap();
         let settings = Settings { light_gain: [0.5; 3], threshold: 1.0, ..Settings::default() };
         let expected = composite(renderer, &clean, &settings);
         let picture = composite(renderer, &photo, &settings);
@@ -113,9 +111,9 @@ fn a_bad_pixel_harms_only_itself() {
 
 #[test]
 fn the_glare_is_linear_in_the_strength() {
-    let (ghosts, plan) = scene();
-    on_each_backend(|_, renderer| {
-        let plain = glare(renderer, &ghosts, &plan, frame());
+    let plan = scene();
+    on_one_backend(|_, renderer| {
+        let plain = glare(renderer, &plan, frame());
         for strength in [0.0, 0.25, 3.0, -1.5] {
             let scaled = renderer.glare(frame(), &Settings { strength, ..Settings::default() }).unwrap();
             for (plain, scaled) in plain.iter().zip(&scaled) {
@@ -148,9 +146,9 @@ fn light_is_taken_only_where_the_photo_is_bright_enough() {
     let taken = [true, false, true, false, false, false];
     let frame = Frame::full(6, 1);
     let photo = colours.map(|[r, g, b]| [r, g, b, 1.0]);
-    on_each_backend(|_, renderer| {
+    on_one_backend(|_, renderer| {
         // No ghosts: what is left is the photo with its lights taken.
-        renderer.set_scene(&[], &plan_with(&[], frame, 1e-2, Evaluator::Rows)).unwrap();
+        renderer.field.set_scene(&plan_with(&[], frame, 1e-2, Evaluator::Rows)).unwrap();
         let mut picture = photo;
         renderer.composite(frame, &mut picture, &settings).unwrap();
         for ((before, after), taken) in photo.iter().zip(&picture).zip(taken) {
@@ -171,8 +169,8 @@ fn light_is_taken_by_what_a_pixel_gives_of_its_colour() {
     let photo = [hidden[0], hidden[1], hidden[2], hidden[3], [0.0, 0.0, 90.0, 1.0], [2.0, 2.0, -90.0, 7.0]];
     let taken = [false, false, true, false, false, true];
     let frame = Frame::full(6, 1);
-    on_each_backend(|_, renderer| {
-        renderer.set_scene(&[], &plan_with(&[], frame, 1e-2, Evaluator::Rows)).unwrap();
+    on_one_backend(|_, renderer| {
+        renderer.field.set_scene(&plan_with(&[], frame, 1e-2, Evaluator::Rows)).unwrap();
         let mut picture = photo;
         renderer.composite(frame, &mut picture, &settings).unwrap();
         for ((before, after), taken) in photo.iter().zip(&picture).zip(taken) {
@@ -184,10 +182,10 @@ fn light_is_taken_by_what_a_pixel_gives_of_its_colour() {
 
 #[test]
 fn a_constant_is_taken_from_the_field_before_it_becomes_glare() {
-    let (ghosts, plan) = scene();
+    let plan = scene();
     let constant = [0.05, 0.01, 0.002];
-    on_each_backend(|_, renderer| {
-        renderer.set_scene(&ghosts, &plan).unwrap();
+    on_one_backend(|_, renderer| {
+        renderer.field.set_scene(&plan).unwrap();
         for normalize in [Normalize::None, Normalize::Clamp, Normalize::Minmax] {
             let settings = Settings { strength: 2.0, normalize, ..Settings::default() };
             let raw = renderer.glare(frame(), &Settings { normalize: Normalize::None, ..settings }).unwrap();
@@ -211,25 +209,25 @@ fn a_constant_is_taken_from_the_field_before_it_becomes_glare() {
 
 #[test]
 fn the_constant_term_is_all_of_a_series_of_degree_zero() {
-    let (ghosts, _) = scene();
+    let ghosts = scene().problem().ghosts().to_vec();
     let request = |degree| Request {
         evaluator: Some(Evaluator::Rows),
         period: Some([8.0, 6.0].into()),
         degree: Some([degree; 2]),
-        ..Request::new(frame(), 1e-2)
+        ..Request::new(1e-2)
     };
-    on_each_backend(|_, renderer| {
-        renderer.set_scene(&ghosts, &plan(&ghosts, &request(0)).unwrap()).unwrap();
-        let level = renderer.probe(frame(), &[[3, 4]]).unwrap()[0];
-        renderer.set_scene(&ghosts, &plan(&ghosts, &request(40)).unwrap()).unwrap();
-        let constant = renderer.constant_term().unwrap();
+    on_one_backend(|_, renderer| {
+        renderer.field.set_scene(&plan(&ghosts, frame(), &request(0)).unwrap()).unwrap();
+        let level = renderer.field.probe(frame(), &[[3, 4]]).unwrap()[0];
+        renderer.field.set_scene(&plan(&ghosts, frame(), &request(40)).unwrap()).unwrap();
+        let constant = renderer.field.constant_term().unwrap();
         for colour in 0..3 {
             assert!(
                 (constant[colour] - level[colour]).abs() <= 1e-6 * level[colour].abs(),
                 "{constant:?}, not {level:?}"
             );
         }
-        renderer.set_scene(&ghosts, &plan_with(&ghosts, frame(), 1e-3, Evaluator::Direct)).unwrap();
-        assert_eq!(renderer.constant_term(), None, "bells have none");
+        renderer.field.set_scene(&plan_with(&ghosts, frame(), 1e-3, Evaluator::Direct)).unwrap();
+        assert_eq!(renderer.field.constant_term(), None, "bells have none");
     });
 }

@@ -21,9 +21,9 @@ fn buffers_bring_the_same_bits() {
     let ghosts = scenes::random(8, 30, FRAME);
     let settings = Settings { strength: 0.75, ..Settings::default() };
     on_each_backend(|backend, renderer| {
-        renderer.set_scene(&ghosts, &plan_with(&ghosts, FRAME, 1e-3, Evaluator::Grid)).unwrap();
+        renderer.field.set_scene(&plan_with(&ghosts, FRAME, 1e-3, Evaluator::Grid)).unwrap();
         for tile_pixels in [4 << 20, 1000, 40] {
-            renderer.set_tile_pixels(tile_pixels);
+            renderer.field.set_tile_pixels(tile_pixels);
             let [straight, buffered] = [false, true].map(|buffered| {
                 renderer.set_pixel_buffers(buffered);
                 let mut picture = photo(FRAME, 5);
@@ -45,18 +45,18 @@ fn a_picture_may_be_collected_after_the_next_is_submitted() {
     on_each_backend(|backend, renderer| {
         let mut alone = [photo(FRAME, 1), photo(small, 2)];
         for (frame, pixels) in [FRAME, small].into_iter().zip(&mut alone) {
-            renderer.set_scene(&ghosts, &plan(frame)).unwrap();
+            renderer.field.set_scene(&plan(frame)).unwrap();
             renderer.composite(frame, pixels, &settings).unwrap();
         }
         renderer.set_pixel_buffers(true);
         for tile_pixels in [4 << 20, 300] {
-            renderer.set_tile_pixels(tile_pixels);
+            renderer.field.set_tile_pixels(tile_pixels);
             let [mut first, mut second] = [photo(FRAME, 1), photo(small, 2)];
-            renderer.set_scene(&ghosts, &plan(FRAME)).unwrap();
+            renderer.field.set_scene(&plan(FRAME)).unwrap();
             let under_way = renderer.submit(FRAME, &mut first, &settings).unwrap();
-            renderer.set_scene(&ghosts, &plan(small)).unwrap();
+            renderer.field.set_scene(&plan(small)).unwrap();
             let also = renderer.submit(small, &mut second, &settings).unwrap();
-            renderer.probe(small, &[[3, 4]]).unwrap();
+            renderer.field.probe(small, &[[3, 4]]).unwrap();
             renderer.collect(under_way, &mut first).unwrap();
             renderer.collect(also, &mut second).unwrap();
             assert!(bits(&first) == bits(&alone[0]), "{backend}, the first, tiles of {tile_pixels}");

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use clap::Parser;
 use vglare::gpu::Backend;
-use vglare::rex::{Experiment, Field, Figure, Lab, Report};
+use vglare::laboratory::rex::{Experiment, Field, Figure, Lab, Report};
 
 use crate::support::table::faults;
 use crate::support::turn;

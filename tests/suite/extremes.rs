@@ -10,16 +10,16 @@ mod terms;
 use vglare::Error;
 use vglare::compare::compare_in;
 use vglare::frame::Frame;
-use vglare::plan::{Evaluator, Plan, Request, plan};
+use vglare::plan::{Evaluator, Plan, Request};
 use vglare::reference::direct_at;
-use vglare::renderer::{Renderer, Settings};
+use vglare::renderer::{Picture, Settings};
 use vglare::scene::Ghost;
 
-use crate::support::scenes;
+use crate::support::{plan, scenes};
 
 /// A request that leaves everything but the tolerance to the plan, with what the software renderer can do.
-fn request(frame: Frame, tolerance: f64) -> Request {
-    Request { loop_rounds: 65535, ..Request::new(frame, tolerance) }
+fn request(tolerance: f64) -> Request {
+    Request { loop_rounds: 65535, ..Request::new(tolerance) }
 }
 
 /// The evaluator that is asked for: each of them, and the plan's own choice.
@@ -36,8 +36,8 @@ struct Outcome {
 
 /// A plan as asked for. Where there is none, the error is checked to be an honest one, and printed.
 #[track_caller]
-fn planned(what: &str, ghosts: &[Ghost], request: &Request) -> Option<Plan> {
-    match plan(ghosts, request) {
+fn planned(what: &str, ghosts: &[Ghost], frame: Frame, request: &Request) -> Option<Plan> {
+    match plan(ghosts, frame, request) {
         Ok(plan) => {
             let total = plan.predicted.total();
             // What is given by hand is predicted as it comes.
@@ -60,14 +60,14 @@ fn planned(what: &str, ghosts: &[Ghost], request: &Request) -> Option<Plan> {
 
 /// Renders a scene and measures it: at every pixel of small pictures, else at probes.
 #[track_caller]
-fn measured(renderer: &mut Renderer, what: &str, ghosts: &[Ghost], frame: Frame, plan: &Plan) -> f64 {
-    renderer.set_scene(ghosts, plan).unwrap_or_else(|error| panic!("{what}: {error}"));
+fn measured(renderer: &mut Picture, what: &str, ghosts: &[Ghost], frame: Frame, plan: &Plan) -> f64 {
+    renderer.field.set_scene(plan).unwrap_or_else(|error| panic!("{what}: {error}"));
     let pixels = match frame.window.pixels() * ghosts.len() {
         ..=2_000_000 => scenes::every_pixel(frame),
         _ => scenes::probes(7, ghosts, plan, frame),
     };
     let exact = direct_at(ghosts, &scenes::positions(frame, &pixels));
-    let difference = compare_in(&exact, &renderer.probe(frame, &pixels).unwrap(), plan.scale);
+    let difference = compare_in(&exact, &renderer.field.probe(frame, &pixels).unwrap(), plan.scale);
     let total = plan.predicted.total();
     let (pixel, colour) = difference.worst;
     assert!(
@@ -78,7 +78,7 @@ fn measured(renderer: &mut Renderer, what: &str, ghosts: &[Ghost], frame: Frame,
         pixels.get(pixel),
         difference.not_finite,
     );
-    if frame.window.pixels() <= 100_000 && plan.evaluator != Evaluator::Series {
+    if frame.window.pixels() <= 100_000 && plan.evaluator() != Evaluator::Series {
         let glare = renderer.glare(frame, &Settings::default()).unwrap();
         assert!(glare.as_flattened().iter().all(|value| value.is_finite()), "{what}: the picture is not finite");
     }
@@ -87,16 +87,16 @@ fn measured(renderer: &mut Renderer, what: &str, ghosts: &[Ghost], frame: Frame,
 
 /// Plans, renders, measures and prints a line; `None` where an error said why not.
 #[track_caller]
-fn look(renderer: &mut Renderer, what: &str, ghosts: &[Ghost], request: &Request) -> Option<Outcome> {
-    let plan = planned(what, ghosts, request)?;
-    let measured = measured(renderer, what, ghosts, request.frame, &plan);
-    let [n, m] = plan.degree;
+fn look(renderer: &mut Picture, what: &str, ghosts: &[Ghost], frame: Frame, request: &Request) -> Option<Outcome> {
+    let plan = planned(what, ghosts, frame, request)?;
+    let measured = measured(renderer, what, ghosts, frame, &plan);
+    let [n, m] = plan.degree();
     println!(
         "{what}: {}, degree {n} x {m}, period {:.3e} x {:.3e}, {} dropped: measured {measured:.1e}, predicted {:.1e}, \
          asked {:.1e}",
-        plan.evaluator,
-        plan.period.x,
-        plan.period.y,
+        plan.evaluator(),
+        plan.period().x,
+        plan.period().y,
         plan.dropped,
         plan.predicted.total(),
         request.tolerance,

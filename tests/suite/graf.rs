@@ -2,30 +2,21 @@
 
 use glam::DVec2;
 use vglare::frame::{Frame, Window};
-use vglare::gpu::{Backend, Device};
+use vglare::gpu::Backend;
 use vglare::renderer::{GrafRenderer, GrafScene};
 use vglare::series::fourier_bessel::{Chain, FourierBessel, Graf, Kappa, Paraboloid, Spot, exact, truncation};
 use vglare::series::special::{bessel_cubics, bessel_j};
 
 use crate::support::check::Worst;
+use crate::support::on_device;
 use crate::support::scenes::{Chance, every_pixel, positions};
-use crate::support::turn;
 
 const BELL: Paraboloid = Paraboloid { peak: 1.0, curvature: 4.0 };
 const RADIUS: f64 = 2.0;
 
-/// Runs `test` on each backend with a thread of its own.
-fn on_each_backend(test: impl Fn(Backend, &mut GrafRenderer) + Sync) {
-    for backend in Backend::ALL {
-        std::thread::scope(|scope| {
-            let thread = scope.spawn(|| {
-                let _turn = turn();
-                let device = Device::open(&[backend]).expect("these tests need GL");
-                test(backend, &mut GrafRenderer::new(&device).unwrap());
-            });
-            thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-        });
-    }
+/// Runs `test` with a renderer of its own.
+fn on_backend<T: Send>(backend: Backend, test: impl FnOnce(Backend, &mut GrafRenderer) -> T + Send) -> T {
+    on_device(backend, |device| test(backend, &mut GrafRenderer::new(device).unwrap()))
 }
 
 /// The largest difference between a rendered field and f64, over the pixels and in parts of what all peaks add up to.
@@ -77,19 +68,21 @@ fn the_device_renders_what_f64_says() {
             let graf = Graf::new(&series, &spots, highest, kappa);
             (scene, at.iter().map(|&at| graf.value(at)).collect::<Vec<_>>())
         });
-        on_each_backend(|backend, renderer| {
-            for (name, (scene, expected)) in [("right", &right), ("printed", &printed)] {
-                if name == "printed" && highest == 0 {
-                    continue; // nothing at all
+        for backend in Backend::ALL {
+            on_backend(backend, |backend, renderer| {
+                for (name, (scene, expected)) in [("right", &right), ("printed", &printed)] {
+                    if name == "printed" && highest == 0 {
+                        continue; // nothing at all
+                    }
+                    let error = off(renderer, scene, frame, expected);
+                    println!("{backend}, N = {terms}, M = {highest}, {name}: {error:.1e}");
+                    // Tables in f32, a Hermite cubic (6e-7 of the fastest term), and some hundred roundings in f32.
+                    assert!(error < 2e-6, "{backend}, N = {terms}, M = {highest}, {name}: {error:e}");
                 }
-                let error = off(renderer, scene, frame, expected);
-                println!("{backend}, N = {terms}, M = {highest}, {name}: {error:.1e}");
-                // Tables in f32, a Hermite cubic (6e-7 of the fastest term), and some hundred roundings in f32.
-                assert!(error < 2e-6, "{backend}, N = {terms}, M = {highest}, {name}: {error:e}");
-            }
-            let error = off(renderer, &right.0, frame, &printed.1);
-            assert!(error > 1e-2, "the printed weights give another field");
-        });
+                let error = off(renderer, &right.0, frame, &printed.1);
+                assert!(error > 1e-2, "the printed weights give another field");
+            });
+        }
     }
 }
 
@@ -103,7 +96,7 @@ fn many_ghosts_go_in_batches_and_still_give_the_bells() {
     let spots = spots(5000, 0.5);
     let scene = GrafScene { series: &series, spots: &spots, highest: 60, kappa: Kappa::Right };
     let expected: Vec<f64> = at.iter().map(|&at| exact(BELL, &spots, at)).collect();
-    on_each_backend(|backend, renderer| {
+    on_backend(Backend::Egl, |backend, renderer| {
         let error = off(renderer, &scene, frame, &expected);
         let law = truncation(BELL, RADIUS, TERMS);
         println!("{backend}: {error:.1e}, {law:.1e} if all stood in one place");
@@ -121,7 +114,7 @@ fn a_window_is_cut_from_the_same_field() {
         let part = Frame::full(width, height).with_window(Window { x, y, width: 19, height: 13 });
         let expected: Vec<f64> =
             positions(part, &every_pixel(part)).iter().map(|&at| series.unseparated(&spots, at)).collect();
-        on_each_backend(|backend, renderer| {
+        on_backend(Backend::Egl, |backend, renderer| {
             let error = off(renderer, &scene, part, &expected);
             println!("{backend}, from {x}, {y}: {error:.1e}");
             assert!(error < 2e-6, "{backend}, from {x}, {y}: {error:e}");

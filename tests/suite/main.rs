@@ -27,6 +27,7 @@ mod scene;
 mod special;
 mod sphere;
 mod split;
+mod steep;
 mod support;
 mod tiles;
 mod view;

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::DVec2;
 use vglare::frame::Frame;
 use vglare::gpu::Backend;
-use vglare::plan::{CostModel, Evaluator, Plan, Request, Transform, plan};
+use vglare::plan::{CostModel, Evaluator, Plan, Request, Transform};
 use vglare::reference::direct_at;
 use vglare::scene::Ghost;
 use vglare::series::Bell;
@@ -13,7 +13,7 @@ use vglare::series::moments::{Cells, Point, Sums, order_within};
 
 use crate::support::check::{Worst, within};
 use crate::support::scenes::{self, Chance};
-use crate::support::{bits, glare, on_backend, on_each_backend};
+use crate::support::{bits, glare, on_backend, on_one_backend, plan};
 
 /// What f64 may leave of weights that add up to 1.
 const ROUNDING: f64 = 1e-14;
@@ -168,7 +168,7 @@ fn cheap(change: impl FnOnce(&mut CostModel)) -> CostModel {
 }
 
 fn gathers(plan: &Plan) -> bool {
-    plan.groups.iter().any(|group| matches!(group.transform, Transform::Gather(_)))
+    plan.groups().any(|group| matches!(group.transform, Transform::Gather(_)))
 }
 
 /// A plan of an evaluator that gathers where it can, or that does not.
@@ -178,9 +178,9 @@ fn planned(ghosts: &[Ghost], evaluator: Evaluator, gather: bool) -> Plan {
     } else {
         cheap(|model| model.moment = 1e9)
     };
-    let request = Request { evaluator: Some(evaluator), cost_model, ..Request::new(FRAME, 1e-3) };
-    let plan = plan(ghosts, &request).unwrap();
-    assert_eq!(gathers(&plan), gather, "{evaluator}: {:?}", plan.groups);
+    let request = Request { evaluator: Some(evaluator), cost_model, ..Request::new(1e-3) };
+    let plan = plan(ghosts, FRAME, &request).unwrap();
+    assert_eq!(gathers(&plan), gather, "{evaluator}: {:?}", plan.layers());
     assert!(plan.predicted.total() <= 1e-3 && (plan.predicted.gathering > 0.0) == gather, "{:?}", plan.predicted);
     plan
 }
@@ -194,16 +194,16 @@ fn a_gathered_field_is_the_dispatched_one_and_both_are_as_exact_as_predicted() {
         let exact = direct_at(&ghosts, &points);
         for evaluator in [Evaluator::Series, Evaluator::Rows, Evaluator::Grid] {
             // A periodic bell's copies, or a sharp bell's degree, may leave no plan at all.
-            let request = Request { evaluator: Some(evaluator), ..Request::new(FRAME, 1e-3) };
-            if plan(&ghosts, &request).is_err() {
+            let request = Request { evaluator: Some(evaluator), ..Request::new(1e-3) };
+            if plan(&ghosts, FRAME, &request).is_err() {
                 continue;
             }
             let plans = [true, false].map(|gather| planned(&ghosts, evaluator, gather));
-            on_each_backend(|backend, renderer| {
+            on_one_backend(|backend, renderer| {
                 for plan in &plans {
-                    renderer.set_scene(&ghosts, plan).unwrap();
-                    let actual = renderer.probe(FRAME, &pixels).unwrap();
-                    let name = format!("{backend}, {bell}, {evaluator}, {:?}", plan.groups[0].transform);
+                    renderer.field.set_scene(plan).unwrap();
+                    let actual = renderer.field.probe(FRAME, &pixels).unwrap();
+                    let name = format!("{backend}, {bell}, {evaluator}, {:?}", plan.groups().next().unwrap().transform);
                     within(plan.predicted.total(), &name, &pixels, &exact, &actual);
                 }
             });
@@ -215,17 +215,17 @@ fn a_gathered_field_is_the_dispatched_one_and_both_are_as_exact_as_predicted() {
 fn a_gathered_spectrum_is_the_same_every_time() {
     let ghosts = alike(&Bell::Gaussian, 2000, 0.4);
     let plan = planned(&ghosts, Evaluator::Rows, true);
-    let [first, second] = [(); 2].map(|()| on_backend(Backend::Egl, |r| bits(&glare(r, &ghosts, &plan, FRAME))));
+    let [first, second] = [(); 2].map(|()| on_backend(Backend::Egl, |r| bits(&glare(r, &plan, FRAME))));
     assert!(first == second);
 }
 
 #[test]
 fn few_ghosts_are_dispatched_and_many_of_one_size_are_gathered() {
-    let transform = |ghosts: &[Ghost]| gathers(&plan(ghosts, &Request::new(FRAME, 1e-3)).unwrap());
+    let transform = |ghosts: &[Ghost]| gathers(&plan(ghosts, FRAME, &Request::new(1e-3)).unwrap());
     for evaluator in [Evaluator::Rows, Evaluator::Grid] {
         let of = |count| {
             let ghosts = alike(&Bell::Gaussian, count, 0.3);
-            plan(&ghosts, &Request { evaluator: Some(evaluator), ..Request::new(FRAME, 1e-2) }).unwrap()
+            plan(&ghosts, FRAME, &Request { evaluator: Some(evaluator), ..Request::new(1e-2) }).unwrap()
         };
         assert!(!gathers(&of(300)), "{evaluator}: few");
         let many = of(60_000);

@@ -26,10 +26,10 @@ fn a_ghost_is_brightest_where_its_centre_is() {
     on_each_backend(|backend, renderer| {
         for evaluator in Evaluator::ALL {
             let plan = plan_with(&asymmetric(), FRAME, 1e-4, evaluator);
-            let pixels = glare(renderer, &asymmetric(), &plan, FRAME);
+            let pixels = glare(renderer, &plan, FRAME);
             assert_eq!(brightest(&pixels, 0), [80, 9], "{backend}, {evaluator}: red");
             assert_eq!(brightest(&pixels, 2), [13, 50], "{backend}, {evaluator}: blue");
-            assert_eq!(renderer.probe(FRAME, &[[80, 9]]).unwrap()[0][0] as f32, pixels[9 * 97 + 80][0]);
+            assert_eq!(renderer.field.probe(FRAME, &[[80, 9]]).unwrap()[0][0] as f32, pixels[9 * 97 + 80][0]);
         }
     });
 }
@@ -49,9 +49,9 @@ fn a_window_is_a_crop_of_the_picture() {
     on_each_backend(|backend, renderer| {
         for evaluator in [Evaluator::Direct, Evaluator::Series, Evaluator::Rows] {
             let plan = plan_with(&asymmetric(), whole, 1e-3, evaluator);
-            let all = glare(renderer, &asymmetric(), &plan, whole);
+            let all = glare(renderer, &plan, whole);
             for window in WINDOWS {
-                let part = glare(renderer, &asymmetric(), &plan, FRAME.with_window(window));
+                let part = glare(renderer, &plan, FRAME.with_window(window));
                 let first = |j: u32| ((window.y + 40 + j as i32) * 140 + window.x + 20) as usize;
                 let crop: Vec<_> =
                     (0..window.height).flat_map(|j| &all[first(j)..][..window.width as usize]).copied().collect();
@@ -72,7 +72,7 @@ fn a_window_keeps_the_promise_of_its_own_plan() {
             let plan = plan_with(&ghosts, frame, 1e-3, evaluator);
             let pixels = scenes::every_pixel(frame);
             let exact = direct_at(&ghosts, &scenes::positions(frame, &pixels));
-            let actual = rgb(&glare(renderer, &ghosts, &plan, frame));
+            let actual = rgb(&glare(renderer, &plan, frame));
             within(plan.predicted.total(), &format!("{backend}, {evaluator}, {window:?}"), &pixels, &exact, &actual);
         }
     });
@@ -88,7 +88,7 @@ fn a_round_ghost_is_round_where_wide_pixels_are_shown() {
             Evaluator::ALL.map(|evaluator| (Frame { pixel_aspect, ..FRAME }.with_window(window), evaluator))
         }) {
             let plan = plan_with(&ghosts, frame, 1e-4, evaluator);
-            let pixels = rgb(&glare(renderer, &ghosts, &plan, frame));
+            let pixels = rgb(&glare(renderer, &plan, frame));
             let sum = |of: &dyn Fn(f64, f64) -> f64| -> f64 {
                 let value = |(k, pixel): (usize, &[f64; 3])| {
                     let (column, row) = ((k % 177) as f64 - 40.0 - 48.0, (k / 177) as f64 - 30.0 - 30.0);

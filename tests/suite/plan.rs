@@ -5,13 +5,13 @@ mod search;
 use glam::DVec2;
 use vglare::Error;
 use vglare::frame::{Frame, Window};
-use vglare::plan::{Cost, Evaluator, HIGHEST_DEGREE, Plan, Request, plan};
+use vglare::plan::{Cost, Evaluator, HIGHEST_DEGREE, Plan, Request};
 use vglare::reference::{direct_at, series};
 use vglare::scene::Ghost;
 
 use crate::support::check::{Worst, within};
 use crate::support::scenes::{self, Chance};
-use crate::support::{on_each_backend, plan_with};
+use crate::support::{on_one_backend, plan, plan_with};
 
 const SCENES: u64 = 200;
 
@@ -40,12 +40,12 @@ fn chosen(seed: u64) -> (Vec<Ghost>, Frame, f64) {
 }
 
 fn series_at(ghosts: &[Ghost], plan: &Plan, points: &[DVec2]) -> Vec<[f64; 3]> {
-    points.iter().map(|&at| series(ghosts, plan.period, &plan.counts, at)).collect()
+    points.iter().map(|&at| series(ghosts, plan.period(), &plan.counts(), at)).collect()
 }
 
 /// The ghosts that a plan keeps.
 fn kept(ghosts: &[Ghost], plan: &Plan) -> Vec<Ghost> {
-    plan.groups.iter().flat_map(|group| group.members.iter()).map(|&index| ghosts[index as usize].clone()).collect()
+    plan.groups().flat_map(|group| group.members.iter()).map(|&index| ghosts[index as usize].clone()).collect()
 }
 
 #[test]
@@ -55,8 +55,8 @@ fn a_plan_predicts_no_more_than_was_asked_and_no_less_than_comes() {
     for seed in 0..SCENES {
         let (ghosts, frame, tolerance) = chosen(seed);
         let evaluator = Evaluator::ALL[seed as usize % 4];
-        let request = Request { evaluator: Some(evaluator), ..Request::new(frame, tolerance) };
-        let plan = match plan(&ghosts, &request) {
+        let request = Request { evaluator: Some(evaluator), ..Request::new(tolerance) };
+        let plan = match plan(&ghosts, frame, &request) {
             Ok(plan) => plan,
             Err(Error::ToleranceBelowFloor { floor, .. }) => {
                 assert!(floor > tolerance, "seed {seed}");
@@ -69,8 +69,8 @@ fn a_plan_predicts_no_more_than_was_asked_and_no_less_than_comes() {
         dropped += usize::from(plan.dropped > 0);
         assert!(plan.predicted.total() <= tolerance, "seed {seed}: {:?} for {tolerance:e}", plan.predicted);
         assert_eq!(plan.ghosts() + plan.dropped, ghosts.len(), "seed {seed}: each ghost is kept or dropped");
-        assert!(plan.counts.is_sorted_by(|a, b| a >= b), "seed {seed}: rows grow: {:?}", plan.counts);
-        assert_eq!(plan.terms, plan.counts.iter().map(|&count| count as usize).sum::<usize>());
+        assert!(plan.counts().is_sorted_by(|a, b| a >= b), "seed {seed}: rows grow: {:?}", plan.counts());
+        assert_eq!(plan.terms(), plan.counts().iter().map(|&count| count as usize).sum::<usize>());
 
         let pixels = scenes::probes(seed, &ghosts, &plan, frame);
         let points = scenes::positions(frame, &pixels);
@@ -87,7 +87,7 @@ fn a_plan_predicts_no_more_than_was_asked_and_no_less_than_comes() {
         }
         let predicted = plan.predicted.dropped + plan.predicted.periodisation + plan.predicted.truncation;
         // f64 rounds, too, a little for each ghost.
-        let weight: f64 = plan.groups.iter().map(|group| group.weight).sum();
+        let weight: f64 = plan.groups().map(|group| group.weight).sum();
         let limit = predicted.max(0.0) + 1e-13 * (1.0 + weight);
         let error = within(limit, &format!("seed {seed}, {evaluator}: {:?}", plan.predicted), &pixels, &exact, &actual);
         share.take(error.relative / limit, || format!("seed {seed}, {evaluator}"));
@@ -103,8 +103,8 @@ fn a_plan_predicts_no_more_than_was_asked_and_no_less_than_comes() {
 fn a_plan_is_the_same_every_time() {
     for seed in (0..SCENES).step_by(20) {
         let (ghosts, frame, tolerance) = chosen(seed);
-        let request = Request::new(frame, tolerance);
-        match (plan(&ghosts, &request), plan(&ghosts, &request)) {
+        let request = Request::new(tolerance);
+        match (plan(&ghosts, frame, &request), plan(&ghosts, frame, &request)) {
             (Ok(first), Ok(second)) => assert!(first == second, "seed {seed}"),
             (first, second) => assert_eq!(first.is_err(), second.is_err(), "seed {seed}"),
         }
@@ -118,24 +118,24 @@ fn what_is_given_is_kept() {
     let ghosts = scenes::sized(3, 10, FRAME, 0.2, 1.0);
     let (period, degree) = (DVec2::new(17.0, 15.0), [23, 19]);
     for evaluator in Evaluator::ALL {
-        let asked = Request { evaluator: Some(evaluator), ..Request::new(FRAME, 1e-3) };
-        assert_eq!(plan(&ghosts, &asked).unwrap().evaluator, evaluator);
+        let asked = Request { evaluator: Some(evaluator), ..Request::new(1e-3) };
+        assert_eq!(plan(&ghosts, FRAME, &asked).unwrap().evaluator(), evaluator);
         if evaluator == Evaluator::Direct {
             continue;
         }
-        let by_period = plan(&ghosts, &Request { period: Some(period), ..asked }).unwrap();
-        assert_eq!(by_period.period, period);
-        let by_degree = plan(&ghosts, &Request { degree: Some(degree), ..asked }).unwrap();
-        assert_eq!((by_degree.degree, &by_degree.counts), (degree, &vec![20; 24]), "the whole rectangle");
-        assert_eq!(by_degree.terms, 24 * 20);
-        let both = plan(&ghosts, &Request { period: Some(period), degree: Some(degree), ..asked }).unwrap();
-        assert_eq!((both.period, both.degree), (period, degree));
+        let by_period = plan(&ghosts, FRAME, &Request { period: Some(period), ..asked }).unwrap();
+        assert_eq!(by_period.period(), period);
+        let by_degree = plan(&ghosts, FRAME, &Request { degree: Some(degree), ..asked }).unwrap();
+        assert_eq!((by_degree.degree(), by_degree.counts()), (degree, &[20; 24][..]), "the whole rectangle");
+        assert_eq!(by_degree.terms(), 24 * 20);
+        let both = plan(&ghosts, FRAME, &Request { period: Some(period), degree: Some(degree), ..asked }).unwrap();
+        assert_eq!((both.period(), both.degree()), (period, degree));
     }
-    let cheapest = plan(&ghosts, &Request::new(FRAME, 1e-3)).unwrap();
+    let cheapest = plan(&ghosts, FRAME, &Request::new(1e-3)).unwrap();
     let whole = |cost: &&Cost| cost.evaluator == Evaluator::Direct || cost.summed == 0;
     assert_eq!(cheapest.costs.iter().filter(whole).count(), 4, "the costs of all four are told");
     assert!(cheapest.costs.is_sorted_by(|a, b| a.milliseconds <= b.milliseconds));
-    assert_eq!(cheapest.evaluator, cheapest.costs[0].evaluator);
+    assert_eq!(cheapest.evaluator(), cheapest.costs[0].evaluator);
 }
 
 /// A period and a degree that are bad choices are still predicted, and the prediction still holds.
@@ -147,8 +147,8 @@ fn a_poor_choice_of_period_and_degree_is_predicted_as_it_comes() {
     let exact = direct_at(&ghosts, &points);
     for (period, degree) in [(2.0, 3), (3.0, 40), (5.0, 5), (8.0, 60), (40.0, 10)] {
         let (given, degree) = (Some(DVec2::splat(period)), Some([degree; 2]));
-        let request = Request { evaluator: Some(Evaluator::Rows), period: given, degree, ..Request::new(FRAME, 1e-3) };
-        let plan = plan(&ghosts, &request).unwrap();
+        let request = Request { evaluator: Some(Evaluator::Rows), period: given, degree, ..Request::new(1e-3) };
+        let plan = plan(&ghosts, FRAME, &request).unwrap();
         let name = format!("period {period}, degree {degree:?}");
         let error = within(plan.predicted.total(), &name, &pixels, &exact, &series_at(&ghosts, &plan, &points));
         println!("{name}: {:.1e} of {:.1e} predicted", error.relative, plan.predicted.total());
@@ -159,13 +159,13 @@ fn a_poor_choice_of_period_and_degree_is_predicted_as_it_comes() {
 fn a_tolerance_that_f32_cannot_meet_names_the_one_that_it_can() {
     let ghosts = scenes::sized(3, 10, FRAME, 0.2, 1.0);
     for evaluator in Evaluator::ALL.map(Some).into_iter().chain([None]) {
-        let request = |tolerance| Request { evaluator, ..Request::new(FRAME, tolerance) };
-        let Err(Error::ToleranceBelowFloor { asked, floor }) = plan(&ghosts, &request(1e-9)) else {
+        let request = |tolerance| Request { evaluator, ..Request::new(tolerance) };
+        let Err(Error::ToleranceBelowFloor { asked, floor }) = plan(&ghosts, FRAME, &request(1e-9)) else {
             panic!("{evaluator:?}: 1e-9 cannot be had")
         };
         assert_eq!(asked, 1e-9);
         assert!((1e-8..1e-3).contains(&floor), "{evaluator:?}: {floor:e}");
-        let plan = plan(&ghosts, &request(1.0001 * floor)).unwrap();
+        let plan = plan(&ghosts, FRAME, &request(1.0001 * floor)).unwrap();
         assert!(plan.predicted.total() <= 1.0001 * floor, "the floor itself can be had");
     }
 }
@@ -173,7 +173,7 @@ fn a_tolerance_that_f32_cannot_meet_names_the_one_that_it_can() {
 #[test]
 fn tolerances_that_are_none_are_refused() {
     for tolerance in [0.0, -1e-3, f64::NAN, 1.0, 2.0, f64::INFINITY] {
-        let error = plan(&[], &Request::new(FRAME, tolerance)).unwrap_err();
+        let error = plan(&[], FRAME, &Request::new(tolerance)).unwrap_err();
         assert!(matches!(error, Error::Plan(_)) && error.to_string().contains("tolerance"), "{tolerance}: {error}");
     }
 }
@@ -184,7 +184,7 @@ fn ghosts_far_away_are_dropped_and_counted() {
     let far = scenes::sized(4, 7, FRAME, 0.1, 0.5);
     let far: Vec<Ghost> =
         far.iter().map(|ghost| Ghost { center: ghost.center + DVec2::new(20.0, 0.0), ..ghost.clone() }).collect();
-    let plan = plan(&[near.clone(), far.clone()].concat(), &Request::new(FRAME, 1e-3)).unwrap();
+    let plan = plan(&[near.clone(), far.clone()].concat(), FRAME, &Request::new(1e-3)).unwrap();
     assert_eq!((plan.dropped, plan.ghosts()), (7, 5));
     assert!((0.0..2e-5).contains(&plan.predicted.dropped), "{:?}", plan.predicted);
     // Alone they are nothing: 1e-280 of what they are at their centres.
@@ -201,14 +201,15 @@ fn flanks_of_ghosts_off_the_picture_are_for_the_direct_sum() {
     let points = scenes::positions(FRAME, &pixels);
     for distance in [3.0, 4.0, 6.0, 9.0] {
         let ghosts = [scenes::one([FRAME.x(63.0) + 0.4 * distance, 0.2], 0.4, [1.0, 2.0, 3.0])];
-        let chosen = plan(&ghosts, &Request::new(FRAME, 1e-3)).unwrap();
+        let chosen = plan(&ghosts, FRAME, &Request::new(1e-3)).unwrap();
         let exact = direct_at(&ghosts, &points);
-        let errors = on_each_backend(|backend, renderer| {
-            renderer.set_scene(&ghosts, &chosen).unwrap();
+        let error = on_one_backend(|backend, renderer| {
+            renderer.field.set_scene(&chosen).unwrap();
             let name = format!("{backend}, {distance} sizes away");
-            within(chosen.predicted.total(), &name, &pixels, &exact, &renderer.probe(FRAME, &pixels).unwrap()).relative
+            within(chosen.predicted.total(), &name, &pixels, &exact, &renderer.field.probe(FRAME, &pixels).unwrap())
+                .relative
         });
-        println!("{distance} sizes away, {}: {errors:?} of {:e}", chosen.evaluator, chosen.predicted.total());
+        println!("{distance} sizes away, {}: {error:.1e} of {:e}", chosen.evaluator(), chosen.predicted.total());
     }
 }
 
@@ -235,15 +236,15 @@ fn odd_scenes() -> Vec<(&'static str, Vec<Ghost>)> {
 fn odd_scenes_are_planned_and_rendered() {
     let pixels = scenes::every_pixel(FRAME);
     let points = scenes::positions(FRAME, &pixels);
-    on_each_backend(|backend, renderer| {
+    on_one_backend(|backend, renderer| {
         for (name, ghosts) in odd_scenes() {
             let exact = direct_at(&ghosts, &points);
             for evaluator in Evaluator::ALL {
                 let name = format!("{backend}, {name}, {evaluator}");
                 let plan = plan_with(&ghosts, FRAME, 1e-3, evaluator);
                 assert!(plan.predicted.total() <= 1e-3, "{name}: {:?}", plan.predicted);
-                renderer.set_scene(&ghosts, &plan).unwrap();
-                let actual = renderer.probe(FRAME, &pixels).unwrap();
+                renderer.field.set_scene(&plan).unwrap();
+                let actual = renderer.field.probe(FRAME, &pixels).unwrap();
                 within(plan.predicted.total(), &name, &pixels, &exact, &actual);
             }
         }
@@ -255,28 +256,28 @@ fn a_tiny_ghost_is_for_the_direct_sum_only() {
     let frame = Frame::full(65, 37);
     let ghosts = [scenes::one([0.0, 0.0], 1e-6, [1.0, 2.0, 3.0])];
     for evaluator in [Evaluator::Series, Evaluator::Rows, Evaluator::Grid] {
-        let request = Request { evaluator: Some(evaluator), ..Request::new(frame, 1e-3) };
-        let refusal = plan(&ghosts, &request).unwrap_err().to_string();
+        let request = Request { evaluator: Some(evaluator), ..Request::new(1e-3) };
+        let refusal = plan(&ghosts, frame, &request).unwrap_err().to_string();
         assert!(refusal.contains("degree") && refusal.contains(&HIGHEST_DEGREE.to_string()), "{refusal}");
     }
-    let chosen = plan(&ghosts, &Request::new(frame, 1e-3)).unwrap();
-    assert_eq!(chosen.evaluator, Evaluator::Direct);
+    let chosen = plan(&ghosts, frame, &Request::new(1e-3)).unwrap();
+    assert_eq!(chosen.evaluator(), Evaluator::Direct);
     let pixels = scenes::every_pixel(frame);
     let exact = direct_at(&ghosts, &scenes::positions(frame, &pixels));
-    on_each_backend(|backend, renderer| {
-        renderer.set_scene(&ghosts, &chosen).unwrap();
-        let actual = renderer.probe(frame, &pixels).unwrap();
+    on_one_backend(|backend, renderer| {
+        renderer.field.set_scene(&chosen).unwrap();
+        let actual = renderer.field.probe(frame, &pixels).unwrap();
         within(chosen.predicted.total(), &backend.to_string(), &pixels, &exact, &actual);
     });
     // Off every pixel's centre nothing sees it.
     let between = [Ghost { center: DVec2::splat(0.3 * frame.pixel_size()), ..ghosts[0].clone() }];
-    assert_eq!(plan(&between, &Request::new(frame, 1e-3)).unwrap().dropped, 1);
+    assert_eq!(plan(&between, frame, &Request::new(1e-3)).unwrap().dropped, 1);
 }
 
 #[test]
 fn a_hundred_thousand_ghosts_are_planned() {
     let frame = Frame::full(1920, 1080);
     let ghosts = scenes::random(1, 100_000, frame);
-    let plan = plan(&ghosts, &Request::new(frame, 1e-3)).unwrap();
+    let plan = plan(&ghosts, frame, &Request::new(1e-3)).unwrap();
     assert_eq!(plan.ghosts() + plan.dropped, ghosts.len());
 }

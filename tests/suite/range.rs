@@ -2,9 +2,9 @@
 
 use vglare::frame::Frame;
 use vglare::plan::Evaluator;
-use vglare::renderer::{Normalize, Renderer, Settings};
+use vglare::renderer::{Normalize, Picture, Settings};
 
-use crate::support::{glare, on_each_backend, plan_with, scenes};
+use crate::support::{glare, on_each_backend, on_one_backend, plan_with, scenes};
 
 const SIZES: [[u32; 2]; 9] = [[1, 1], [1, 2], [2, 1], [3, 3], [5, 7], [17, 31], [255, 257], [640, 480], [1921, 1081]];
 
@@ -26,14 +26,14 @@ fn ends(pixels: &[[f32; 4]]) -> [f32; 2] {
 }
 
 /// Reduction and picture multiply the very same f32 values by the very same scale: nothing may differ.
-fn the_range_is_that_of_the_pixels(renderer: &mut Renderer, frame: Frame, tile_pixels: usize) {
+fn the_range_is_that_of_the_pixels(renderer: &mut Picture, frame: Frame, tile_pixels: usize) {
     for which in 0..if frame.window.pixels() > 100_000 { 2 } else { 4 } {
         let ghosts = ghosts(frame, which);
         let plan = plan_with(&ghosts, frame, 1e-2, if which % 2 == 0 { Evaluator::Grid } else { Evaluator::Rows });
-        let expected = ends(&glare(renderer, &ghosts, &plan, frame));
-        renderer.set_tile_pixels(tile_pixels);
-        assert_eq!(renderer.range(frame).unwrap(), expected, "{frame:?}, scene {which}, tiles of {tile_pixels}");
-        renderer.set_tile_pixels(4 << 20);
+        let expected = ends(&glare(renderer, &plan, frame));
+        renderer.field.set_tile_pixels(tile_pixels);
+        assert_eq!(renderer.field.range(frame).unwrap(), expected, "{frame:?}, scene {which}, tiles of {tile_pixels}");
+        renderer.field.set_tile_pixels(4 << 20);
     }
 }
 
@@ -48,7 +48,7 @@ fn the_range_is_that_of_all_pixels_at_odd_sizes() {
 
 #[test]
 fn the_range_gathers_tiles() {
-    on_each_backend(|_, renderer| {
+    on_one_backend(|_, renderer| {
         for ([width, height], tile) in
             [([5, 7], 1), ([17, 31], 40), ([17, 31], 17), ([255, 257], 3000), ([640, 480], 100_000)]
         {
@@ -69,10 +69,10 @@ fn the_comparison_of_ranges_would_notice_one_pixel() {
 fn minmax_stretches_to_zero_and_one_and_clamp_clamps() {
     let frame = Frame::full(61, 35);
     let ghosts = [scenes::one([0.4, 0.3], 0.4, [2.5, 1.0, 0.5]), scenes::one([-0.8, 0.0], 0.3, [-0.7, 0.1, 0.0])];
-    on_each_backend(|_, renderer| {
+    on_one_backend(|_, renderer| {
         for evaluator in Evaluator::ALL {
             let plan = plan_with(&ghosts, frame, 1e-3, evaluator);
-            let plain = glare(renderer, &ghosts, &plan, frame);
+            let plain = glare(renderer, &plan, frame);
             let mut with = |normalize| renderer.glare(frame, &Settings { normalize, ..Settings::default() }).unwrap();
             let [low, high] = ends(&plain);
             assert!(low < -0.5 && high > 2.0, "the scene is beyond 0..1 at both ends: {low} {high}");
@@ -95,11 +95,11 @@ fn minmax_stretches_to_zero_and_one_and_clamp_clamps() {
 #[test]
 fn a_flat_field_stretches_to_nothing() {
     let frame = Frame::full(7, 5);
-    on_each_backend(|_, renderer| {
+    on_one_backend(|_, renderer| {
         for evaluator in Evaluator::ALL {
             let plan = plan_with(&[], frame, 1e-3, evaluator);
-            renderer.set_scene(&[], &plan).unwrap();
-            assert_eq!(renderer.range(frame).unwrap(), [0.0, 0.0]);
+            renderer.field.set_scene(&plan).unwrap();
+            assert_eq!(renderer.field.range(frame).unwrap(), [0.0, 0.0]);
             for normalize in [Normalize::None, Normalize::Clamp, Normalize::Minmax] {
                 let pixels = renderer.glare(frame, &Settings { normalize, ..Settings::default() }).unwrap();
                 assert!(

@@ -4,19 +4,18 @@ use glam::DVec2;
 use vglare::Error;
 use vglare::compare::compare;
 use vglare::frame::Frame;
-use vglare::plan::{Evaluator, Plan, Request, plan};
+use vglare::plan::{Evaluator, Plan, Request};
 use vglare::reference::direct_at;
 use vglare::scene::Ghost;
 
 use crate::support::check::Worst;
-use crate::support::{on_each_backend, scenes};
+use crate::support::{on_one_backend, plan, scenes};
 
 /// The plan's constants are about twice the worst that was seen; what a change of driver adds may use up some of that.
 const SHARE: f64 = 0.6;
 
 struct Case {
     name: String,
-    ghosts: Vec<Ghost>,
     plan: Plan,
     pixels: Vec<[i32; 2]>,
     exact: Vec<[f64; 3]>,
@@ -29,9 +28,9 @@ fn exact_but_for_rounding(ghosts: &[Ghost], frame: Frame, largest: f64, smallest
     let period = 2.6 * half + 7.5 * largest;
     let degree = (period / smallest).ceil().as_uvec2().to_array();
     let (period, degree) = (Some(period), Some(degree));
-    let request = |tolerance| Request { evaluator: Some(evaluator), period, degree, ..Request::new(frame, tolerance) };
-    match plan(ghosts, &request(1e-9)) {
-        Err(Error::ToleranceBelowFloor { floor, .. }) => plan(ghosts, &request(1.001 * floor)).unwrap(),
+    let request = |tolerance| Request { evaluator: Some(evaluator), period, degree, ..Request::new(tolerance) };
+    match plan(ghosts, frame, &request(1e-9)) {
+        Err(Error::ToleranceBelowFloor { floor, .. }) => plan(ghosts, frame, &request(1.001 * floor)).unwrap(),
         plan => plan.unwrap(),
     }
 }
@@ -53,23 +52,23 @@ fn rounding_stays_below_its_bound() {
                     let pixels = scenes::probes(7, &ghosts, &plan, frame);
                     let exact = direct_at(&ghosts, &scenes::positions(frame, &pixels));
                     let name = format!("K = {count}, sizes {smallest} to {largest}");
-                    cases.push(Case { name, ghosts: ghosts.clone(), plan, pixels, exact });
+                    cases.push(Case { name, plan, pixels, exact });
                 }
             }
         }
     }
-    let measured = on_each_backend(|_, renderer| -> Vec<f64> {
+    let measured = on_one_backend(|_, renderer| -> Vec<f64> {
         let measure = |case: &Case| {
-            renderer.set_scene(&case.ghosts, &case.plan).unwrap();
-            compare(&case.exact, &renderer.probe(frame, &case.pixels).unwrap()).relative
+            renderer.field.set_scene(&case.plan).unwrap();
+            compare(&case.exact, &renderer.field.probe(frame, &case.pixels).unwrap()).relative
         };
         cases.iter().map(measure).collect()
     });
     for evaluator in Evaluator::ALL {
         let (mut per_weight, mut share) = (Worst::default(), Worst::default());
-        for (error, Case { name, plan, .. }) in measured.iter().flat_map(|errors| errors.iter().zip(&cases)) {
-            if plan.evaluator == evaluator {
-                let weight: f64 = plan.groups.iter().map(|group| group.weight).sum();
+        for (error, Case { name, plan, .. }) in measured.iter().zip(&cases) {
+            if plan.evaluator() == evaluator {
+                let weight: f64 = plan.groups().map(|group| group.weight).sum();
                 per_weight.take(error / weight, || name.clone());
                 share.take(error / plan.predicted.single(), || name.clone());
             }

@@ -3,14 +3,14 @@
 
 use vglare::frame::Frame;
 use vglare::gpu::Backend;
-use vglare::plan::{CostModel, Evaluator, Plan, Request, Transform, plan};
+use vglare::plan::{CostModel, Evaluator, Layer, Plan, Request};
 use vglare::reference::direct_at;
 use vglare::renderer::{Normalize, Settings};
 use vglare::scene::Ghost;
 use vglare::series::Bell;
 
 use crate::support::check::within;
-use crate::support::{bits, glare, on_backend, on_each_backend, scenes};
+use crate::support::{bits, glare, on_backend, on_one_backend, plan, scenes};
 
 const FRAME: Frame = Frame::full(160, 90);
 
@@ -38,7 +38,7 @@ fn in_favour_of(evaluator: Evaluator) -> CostModel {
 }
 
 fn planned(ghosts: &[Ghost], cost_model: CostModel, tolerance: f64) -> Plan {
-    plan(ghosts, &Request { cost_model, ..Request::new(FRAME, tolerance) }).unwrap()
+    plan(ghosts, FRAME, &Request { cost_model, ..Request::new(tolerance) }).unwrap()
 }
 
 #[test]
@@ -51,12 +51,12 @@ fn a_series_and_a_sum_beside_it_are_as_exact_as_predicted() {
         for evaluator in [Evaluator::Series, Evaluator::Rows, Evaluator::Grid] {
             for tolerance in [1e-2, 1e-3] {
                 let plan = planned(&ghosts, in_favour_of(evaluator), tolerance);
-                assert_eq!(plan.evaluator, evaluator, "{bell}: {:?}", plan.costs);
+                assert_eq!(plan.evaluator(), evaluator, "{bell}: {:?}", plan.costs);
                 assert!((3..200).contains(&plan.summed()), "{bell}: {:?}", plan.costs);
                 assert!(plan.predicted.total() <= tolerance, "{:?}", plan.predicted);
-                on_each_backend(|backend, renderer| {
-                    renderer.set_scene(&ghosts, &plan).unwrap();
-                    let actual = renderer.probe(FRAME, &pixels).unwrap();
+                on_one_backend(|backend, renderer| {
+                    renderer.field.set_scene(&plan).unwrap();
+                    let actual = renderer.field.probe(FRAME, &pixels).unwrap();
                     let name = format!("{backend}, {evaluator} beside {bell} at {tolerance:e}");
                     within(plan.predicted.total(), &name, &pixels, &exact, &actual);
                 });
@@ -69,47 +69,50 @@ fn a_series_and_a_sum_beside_it_are_as_exact_as_predicted() {
 fn without_the_sum_beside_it_the_field_is_wrong() {
     let ghosts = mixed(5, 3, &Bell::Gaussian);
     let whole = planned(&ghosts, CostModel::default(), 1e-3);
-    let series = Plan {
-        groups: whole.groups.iter().filter(|group| group.transform != Transform::Direct).cloned().collect(),
-        ..whole.clone()
-    };
-    let [with, without] = [&whole, &series].map(|plan| on_backend(Backend::Egl, |r| glare(r, &ghosts, plan, FRAME)));
+    let series = whole.layers().iter().filter(|layer| matches!(layer, Layer::Series(_))).cloned();
+    let mut series = Plan::by_hand(whole.problem().clone(), series.collect());
+    series.scale = whole.scale;
+    let [with, without] = [&whole, &series].map(|plan| on_backend(Backend::Egl, |r| glare(r, plan, FRAME)));
     let off = with.iter().zip(&without).map(|(a, b)| (a[0] - b[0]).abs()).fold(0.0f32, f32::max);
     assert!(f64::from(off) > 0.05 * whole.scale[0], "{off} of {:?}", whole.scale);
 }
 
 #[test]
 fn what_costs_the_least_decides_who_is_summed() {
-    let request = Request::new(FRAME, 1e-3);
-    let of = |ghosts: &[Ghost]| plan(ghosts, &request).unwrap();
+    let request = Request::new(1e-3);
+    let of = |ghosts: &[Ghost]| plan(ghosts, FRAME, &request).unwrap();
     let wide = scenes::sized(5, 300, FRAME, 0.3, 0.6);
     assert_eq!(of(&wide).summed(), 0, "nothing is small");
     let few = of(&mixed(5, 3, &Bell::Gaussian));
     assert_eq!(few.summed(), 3);
-    let whole = few.costs.iter().find(|cost| cost.evaluator == few.evaluator && cost.summed == 0).unwrap();
+    let whole = few.costs.iter().find(|cost| cost.evaluator == few.evaluator() && cost.summed == 0).unwrap();
     assert!(few.cost().unwrap() < 0.5 * whole.milliseconds, "{:?}", few.costs);
     assert_eq!(few.summed_groups().map(|group| group.largest.max_element()).fold(0.0, f64::max).max(0.04), 0.04);
     let none = of(&mixed(5, 0, &Bell::Gaussian));
-    assert_eq!((none.evaluator, none.degree), (few.evaluator, few.degree), "the series is that of the wide ghosts");
+    assert_eq!(
+        (none.evaluator(), none.degree()),
+        (few.evaluator(), few.degree()),
+        "the series is that of the wide ghosts"
+    );
     // Where there are many small ones, nothing is gained by summing them beside a series.
     let many = of(&mixed(5, 2500, &Bell::Gaussian));
-    assert!(many.summed() == 0 || many.evaluator == Evaluator::Direct, "{:?}", many.costs);
+    assert!(many.summed() == 0 || many.evaluator() == Evaluator::Direct, "{:?}", many.costs);
     let all = planned(&mixed(5, 3, &Bell::Gaussian), in_favour_of(Evaluator::Direct), 1e-3);
-    assert_eq!((all.evaluator, all.summed(), all.terms), (Evaluator::Direct, all.ghosts(), 0));
+    assert_eq!((all.evaluator(), all.summed(), all.terms()), (Evaluator::Direct, all.ghosts(), 0));
 }
 
 #[test]
 fn what_is_asked_for_by_hand_is_not_split() {
     let ghosts = mixed(5, 3, &Bell::Gaussian);
-    let request = Request::new(FRAME, 1e-2);
-    let chosen = plan(&ghosts, &request).unwrap();
+    let request = Request::new(1e-2);
+    let chosen = plan(&ghosts, FRAME, &request).unwrap();
     for by_hand in [
         Request { evaluator: Some(Evaluator::Rows), ..request },
-        Request { period: Some(3.0 * chosen.period), ..request },
+        Request { period: Some(3.0 * chosen.period()), ..request },
         Request { degree: Some([64, 64]), ..request },
     ] {
-        let plan = plan(&ghosts, &by_hand).unwrap();
-        assert!(plan.summed() == 0 && plan.terms > 0, "{by_hand:?}: {:?}", plan.costs);
+        let plan = plan(&ghosts, FRAME, &by_hand).unwrap();
+        assert!(plan.summed() == 0 && plan.terms() > 0, "{by_hand:?}: {:?}", plan.costs);
     }
 }
 
@@ -120,11 +123,11 @@ fn split_fields_meet_at_tiles_bit_for_bit_and_leave_no_trace() {
         let [mine, theirs] = [&ghosts, &others].map(|ghosts| planned(ghosts, in_favour_of(evaluator), 1e-2));
         let settings = Settings { normalize: Normalize::Minmax, ..Settings::default() };
         on_backend(Backend::Egl, |renderer| {
-            let once = bits(&glare(renderer, &ghosts, &mine, FRAME));
+            let once = bits(&glare(renderer, &mine, FRAME));
             let stretched = bits(&renderer.glare(FRAME, &settings).unwrap());
-            glare(renderer, &others, &theirs, FRAME);
-            renderer.set_tile_pixels(1000);
-            assert!(bits(&glare(renderer, &ghosts, &mine, FRAME)) == once, "{evaluator}");
+            glare(renderer, &theirs, FRAME);
+            renderer.field.set_tile_pixels(1000);
+            assert!(bits(&glare(renderer, &mine, FRAME)) == once, "{evaluator}");
             assert!(bits(&renderer.glare(FRAME, &settings).unwrap()) == stretched, "{evaluator}, stretched");
         });
     }

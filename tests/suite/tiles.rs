@@ -2,14 +2,14 @@
 
 use vglare::frame::{Frame, Window};
 use vglare::plan::Evaluator;
-use vglare::renderer::{Normalize, Renderer, Settings};
+use vglare::renderer::{Normalize, Picture, Settings};
 
-use crate::support::{bits, on_each_backend, plan_with, scenes};
+use crate::support::{bits, on_one_backend, plan_with, scenes};
 
 const FRAME: Frame = Frame::full(83, 45).with_window(Window { x: -3, y: 2, width: 87, height: 41 });
 
-fn pictures(renderer: &mut Renderer, tile_pixels: usize) -> [Vec<[u32; 4]>; 3] {
-    renderer.set_tile_pixels(tile_pixels);
+fn pictures(renderer: &mut Picture, tile_pixels: usize) -> [Vec<[u32; 4]>; 3] {
+    renderer.field.set_tile_pixels(tile_pixels);
     let settings = Settings { strength: 0.75, ..Settings::default() };
     let mut picture: Vec<[f32; 4]> =
         (0..FRAME.window.pixels()).map(|i| [i as f32, 0.5, 1.0 / (i + 1) as f32, 0.25]).collect();
@@ -22,9 +22,9 @@ fn pictures(renderer: &mut Renderer, tile_pixels: usize) -> [Vec<[u32; 4]>; 3] {
 #[test]
 fn tiles_meet_bit_for_bit() {
     let ghosts = scenes::random(8, 30, FRAME);
-    on_each_backend(|backend, renderer| {
+    on_one_backend(|backend, renderer| {
         for evaluator in Evaluator::ALL {
-            renderer.set_scene(&ghosts, &plan_with(&ghosts, FRAME, 1e-3, evaluator)).unwrap();
+            renderer.field.set_scene(&plan_with(&ghosts, FRAME, 1e-3, evaluator)).unwrap();
             let whole = pictures(renderer, 4 << 20);
             for tile_pixels in [40, FRAME.window.width as usize, 1000] {
                 let tiled = pictures(renderer, tile_pixels);

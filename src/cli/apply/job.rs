@@ -3,11 +3,11 @@
 use super::Args;
 use super::outputs::{Paths, glare_options, picture_options};
 use crate::Result;
-use crate::cli::progress::Progress;
 use crate::gpu::Device;
 use crate::job::{Computer, Done, Found, Stages, Wanted};
 use crate::look::Look;
 use crate::photo::{self, Photo};
+use crate::terminal::progress::Progress;
 
 /// A photo, its files, and what a run has come to know of it: [`Found`], then [`Done`].
 pub struct Job<'a, Work> {

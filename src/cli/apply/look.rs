@@ -1,8 +1,8 @@
 //! How the glare is laid over the photo.
 
 use crate::choices::{Mix, Normalize};
-use crate::cli::numbers::{colour, not_negative, positive};
 use crate::look::Look;
+use crate::options::numbers::{colour, not_negative, positive};
 
 /// How the glare is laid over the photo.
 #[derive(Debug, clap::Args)]

@@ -17,13 +17,13 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 
-use super::accuracy::AccuracyArgs;
-use super::lights::FindArgs;
-use super::numbers::finite;
-use super::reading::ReadArgs;
-use super::scene::SceneArgs;
 use crate::certificate::Verify;
 use crate::look::Look;
+use crate::options::AccuracyArgs;
+use crate::options::FindArgs;
+use crate::options::ReadArgs;
+use crate::options::SceneArgs;
+use crate::options::numbers::finite;
 use crate::photo::{Depth, ToneMap};
 use crate::{Result, limits};
 
@@ -243,8 +243,8 @@ mod tests {
     use super::*;
     use crate::choices::{Evaluator, Mix, Normalize};
     use crate::look::{Accuracy, LookLens, LookLights};
+    use crate::options::command_line;
     use crate::scene::{FindOptions, Goal, Light, presets, write_scene};
-    use crate::viewer::model::command_line;
 
     #[derive(clap::Parser)]
     struct Cli {

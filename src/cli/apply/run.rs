@@ -6,10 +6,10 @@ use super::job::{self, Job};
 use super::outputs::{self, Paths, Work};
 use super::report::Report;
 use super::{Args, sequence, summary};
-use crate::cli::progress::Progress;
 use crate::job::{Computer, Stages, Step, Watch as _};
 use crate::look::Look;
 use crate::photo::{self, Photo};
+use crate::terminal::progress::Progress;
 use crate::{Result, limits, panics, target};
 
 /// Lays glare over photos.

@@ -6,8 +6,8 @@ use super::job::{self, Job};
 use super::outputs::{Paths, Sequence};
 use super::pipeline;
 use super::tally::Tally;
-use crate::cli::progress::Progress;
 use crate::job::{Computer, Done, Found};
+use crate::terminal::progress::Progress;
 use crate::{Error, Result, panics};
 
 /// A photo on its way, or why it is not.

@@ -6,12 +6,13 @@ use super::job::Job;
 use super::report::kind_name;
 use crate::Result;
 use crate::certificate::Verify;
+use crate::cli::found;
 use crate::cli::plan::text;
-use crate::cli::{found, stderr, stdout};
 use crate::job::{Computed, Done};
 use crate::look::{Gathered, Look, LookLights};
 use crate::photo::Facts;
 use crate::scene::Found;
+use crate::terminal::{stderr, stdout};
 
 /// Warnings to standard error; unless quiet, a short summary to standard output.
 pub fn print(job: &Job<'_, Done<'_>>) -> Result<()> {

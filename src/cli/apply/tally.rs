@@ -13,10 +13,10 @@ use super::job::Job;
 use super::outputs::{Paths, Sequence};
 use super::report::Report;
 use super::spool::Spool;
-use crate::cli::progress::Progress;
-use crate::cli::{stderr, stdout};
 use crate::gpu::Info;
 use crate::job::{Computed, Done};
+use crate::terminal::progress::Progress;
+use crate::terminal::{stderr, stdout};
 use crate::{Error, Result, panics, target};
 
 /// What has become of the photos so far.
@@ -235,7 +235,7 @@ fn line(out: &mut dyn Write, job: &Job<'_, Done<'_>>) -> io::Result<()> {
     }
     write!(out, "{} ghosts, ", scene.ghosts.len())?;
     if let Some(Computed { planning, certificate, .. }) = &job.work.computed {
-        write!(out, "{}, error {:.1e}, ", planning.plan.evaluator, certificate.measured)?;
+        write!(out, "{}, error {:.1e}, ", planning.plan.evaluator(), certificate.measured)?;
     }
     let total: f64 = job.work.stages.0.iter().map(|(_, ms)| ms).sum();
     writeln!(out, "{:.2} s", total * 1e-3)?;

@@ -7,18 +7,19 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::accuracy::AccuracyArgs;
 use super::found;
-use super::lights::FindArgs;
-use super::reading::ReadArgs;
-use super::scene::SceneArgs;
-use super::stderr::warn;
-use super::stdout;
 use crate::frame::Frame;
 use crate::gpu::{Device, Info};
 use crate::job::{self, Planning};
 use crate::look::{Gathered, Look};
+use crate::options::AccuracyArgs;
+use crate::options::FindArgs;
+use crate::options::ReadArgs;
+use crate::options::SceneArgs;
 use crate::plan::{CostModel, Plan};
+use crate::problem::Problem;
+use crate::terminal::stderr::warn;
+use crate::terminal::stdout;
 use crate::{Result, photo};
 
 /// Show how the glare of a photo would be computed
@@ -82,7 +83,8 @@ pub fn run(args: &Args) -> Result<()> {
     let frame = args.size.map_or(photo.frame, |[width, height]| photo.frame.resized(width, height));
     let device = Device::open(args.accuracy.backend.backends()).ok();
     let info = device.as_ref().map(|device| device.info());
-    let planned = job::plan(&look.accuracy, &scene.ghosts, frame, info, args.accuracy.known(info))?;
+    let planned =
+        job::plan(&look.accuracy, &Problem::new(scene.ghosts.clone(), frame), info, args.accuracy.known(info))?;
     warn(&planned.warnings);
     let budget = look.accuracy.goal.budget();
     let told = Told { photo: &args.photo, frame, look: &look, scene: &scene, planned: &planned, info, budget };

@@ -14,12 +14,12 @@ pub fn plan(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
     if plan.ghosts() == 0 {
         return Ok(());
     }
-    write!(out, "plan     {}", plan.evaluator)?;
-    if plan.terms > 0 {
-        let ([n, m], period) = (plan.degree, plan.period);
-        write!(out, ", degree {n} x {m}, {} terms, period {:.2} x {:.2}", plan.terms, period.x, period.y)?;
+    write!(out, "plan     {}", plan.evaluator())?;
+    if plan.terms() > 0 {
+        let ([n, m], period) = (plan.degree(), plan.period());
+        write!(out, ", degree {n} x {m}, {} terms, period {:.2} x {:.2}", plan.terms(), period.x, period.y)?;
     }
-    if plan.terms > 0 && plan.summed() > 0 {
+    if plan.terms() > 0 && plan.summed() > 0 {
         write!(out, ", {} of {} ghosts summed directly", plan.summed(), plan.ghosts())?;
     }
     match plan.dropped {
@@ -32,7 +32,7 @@ pub fn plan(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
 pub fn details(out: &mut dyn Write, planned: &Planning) -> io::Result<()> {
     let plan = &planned.plan;
     groups(out, plan)?;
-    if let Some(lattice) = &plan.lattice {
+    if let Some(lattice) = &plan.lattice() {
         let ([x, y], over) = (lattice.nodes, lattice.oversampling);
         writeln!(out, "lattice  {x} x {y} nodes, {:.2} x {:.2} to the shortest half wave", over.x, over.y)?;
     }
@@ -47,7 +47,7 @@ pub fn details(out: &mut dyn Write, planned: &Planning) -> io::Result<()> {
 }
 
 fn groups(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
-    for (index, group) in plan.groups.iter().take(GROUPS).enumerate() {
+    for (index, group) in plan.groups().take(GROUPS).enumerate() {
         let label = if index == 0 { "groups" } else { "" };
         let Group { bell, ghosts, smallest, largest, degree: [n, m], .. } = group;
         let more = if largest == smallest { "" } else { " and more" };
@@ -60,7 +60,7 @@ fn groups(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
             }
         }
     }
-    match plan.groups.len().saturating_sub(GROUPS) {
+    match plan.groups().count().saturating_sub(GROUPS) {
         0 => Ok(()),
         more => writeln!(out, "         and {more} groups more"),
     }

@@ -3,6 +3,7 @@
 mod egl;
 mod memory;
 mod osmesa;
+#[cfg(feature = "window")]
 pub(in crate::gpu) mod window;
 
 use std::cell::Cell;
@@ -21,16 +22,17 @@ pub use memory::be_sparing;
 pub const REQUIRED: (u8, u8) = (4, 3);
 
 /// A way to a GL context.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize)]
+#[cfg_attr(feature = "terminal", derive(clap::ValueEnum))]
 #[serde(rename_all = "lowercase")]
 pub enum Backend {
     /// EGL on a device or without any surface: the graphics driver, or Mesa's software renderer.
     Egl,
     /// OSMesa, Mesa's software renderer in memory: needs neither driver nor display.
-    #[value(name = "osmesa")]
+    #[cfg_attr(feature = "terminal", value(name = "osmesa"))]
     OsMesa,
     /// GLX or EGL on a display, drawing into a window; only [`Display`](window::Display) opens it.
-    #[value(skip)]
+    #[cfg_attr(feature = "terminal", value(skip))]
     Window,
 }
 

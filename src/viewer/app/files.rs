@@ -8,11 +8,12 @@ use egui::{CentralPanel, Panel, ProgressBar, ThemePreference, Ui};
 use super::App;
 use super::ask::{Questions, likely};
 use super::menu::{mark, recent};
+use crate::options::command_line;
 use crate::scene::{read_scene, write_scene};
 use crate::viewer::ask::Purpose;
 use crate::viewer::document::Document;
 use crate::viewer::export::{Export, Subject};
-use crate::viewer::model::{Look, State, Theme, command_line};
+use crate::viewer::model::{Look, State, Theme};
 use crate::{Result, target};
 
 /// How often the file of a look is looked at while nothing else happens.

@@ -1,13 +1,11 @@
 //! What the window edits, without a window: a look, its history, its command line, and where it is kept.
 
 mod change;
-mod command;
 mod edits;
 mod history;
 mod state;
 
 pub use change::{Work, work};
-pub use command::command_line;
 pub use history::History;
 pub use state::{State, Theme};
 

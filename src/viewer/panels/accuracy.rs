@@ -44,9 +44,9 @@ pub fn show(ui: &mut Ui, document: &mut Document, stage: &Stage) {
         summed if summed > 0 && summed < plan.ghosts() => format!(", {summed} of them directly"),
         _ => String::new(),
     };
-    ui.label(format!("{} ghosts by {}{direct}{note}", plan.ghosts(), plan.evaluator));
-    if plan.terms > 0 {
-        ui.label(format!("degree {} × {}, {} terms", plan.degree[0], plan.degree[1], plan.terms));
+    ui.label(format!("{} ghosts by {}{direct}{note}", plan.ghosts(), plan.evaluator()));
+    if plan.terms() > 0 {
+        ui.label(format!("degree {} × {}, {} terms", plan.degree()[0], plan.degree()[1], plan.terms()));
     }
     prediction(ui, plan);
     candidates(ui, plan);

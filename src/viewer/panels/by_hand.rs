@@ -46,7 +46,7 @@ fn degree(ui: &mut Ui, document: &mut Document, stage: &Stage) {
         let mut set = degree.is_some();
         let mut all = ui.checkbox(&mut set, "");
         if all.changed() {
-            *degree = set.then(|| stage.plan().map_or([16; 2], |plan| plan.degree));
+            *degree = set.then(|| stage.plan().map_or([16; 2], |plan| plan.degree()));
         }
         for (name, side) in ["N ", "M "].into_iter().zip(degree.iter_mut().flatten()) {
             all |= ui.add(DragValue::new(side).range(0..=HIGHEST_DEGREE).speed(0.2).prefix(name));
@@ -69,7 +69,7 @@ fn period(ui: &mut Ui, document: &mut Document, stage: &Stage) {
         let mut set = period.is_some();
         let mut all = ui.checkbox(&mut set, "");
         if all.changed() {
-            period = set.then(|| stage.plan().map_or(DVec2::splat(4.0), |plan| plan.period));
+            period = set.then(|| stage.plan().map_or(DVec2::splat(4.0), |plan| plan.period()));
         }
         if let Some(DVec2 { x, y }) = &mut period {
             for (name, side) in [("T₁ ", x), ("T₂ ", y)] {

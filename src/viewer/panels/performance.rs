@@ -92,8 +92,8 @@ fn plan(ui: &mut Ui, stage: &Stage) {
             summed => format!(", {summed} summed directly"),
         };
         row("K", "Ghosts that reach the picture", format!("{}{beside}", plan.ghosts()));
-        row("terms", "Modes of the series that are kept", plan.terms.to_string());
-        row("degree", "Highest harmonic of x and y", format!("{} × {}", plan.degree[0], plan.degree[1]));
-        row("evaluator", "How the field is computed", plan.evaluator.to_string());
+        row("terms", "Modes of the series that are kept", plan.terms().to_string());
+        row("degree", "Highest harmonic of x and y", format!("{} × {}", plan.degree()[0], plan.degree()[1]));
+        row("evaluator", "How the field is computed", plan.evaluator().to_string());
     });
 }

@@ -43,7 +43,7 @@ pub fn show(ui: &mut Ui, document: &mut Document, stage: &Stage) {
 
 fn spectrum(ui: &mut Ui, stage: &Stage) -> Option<()> {
     let tables = stage.known().spectrum()?;
-    if stage.plan()?.terms == 0 {
+    if stage.plan()?.terms() == 0 {
         ui.label("All ghosts are summed directly: there is no spectrum.");
         return Some(());
     }
@@ -125,8 +125,8 @@ fn convergence(ui: &mut Ui, stage: &Stage) -> Option<()> {
         plot.line(Line::new("truncation", points(|degree| degree.truncation)));
         plot.points(Points::new("all sources", points(|degree| degree.total)).radius(2.5));
         plot.hline(HLine::new("tolerance", decades(plan.tolerance)).style(LineStyle::dashed_loose()));
-        if plan.terms > 0 {
-            let degree = f64::from(plan.degree[0].max(plan.degree[1]));
+        if plan.terms() > 0 {
+            let degree = f64::from(plan.degree()[0].max(plan.degree()[1]));
             plot.vline(VLine::new("planned", degree).style(LineStyle::dashed_loose()));
         }
     });

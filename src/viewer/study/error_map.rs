@@ -3,11 +3,11 @@
 use egui::{Color32, ColorImage};
 
 use crate::Result;
-use crate::chart::Map;
+use crate::false_colour::Map;
 use crate::frame::Frame;
 use crate::plan::Plan;
 use crate::reference;
-use crate::renderer::Renderer;
+use crate::renderer::Field;
 use crate::scene::Ghost;
 
 /// How many decades below the tolerance the colours span.
@@ -41,7 +41,7 @@ pub fn colour(part: f64) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// The renderer's field at pixels that are evenly spread.
+/// The field's field at pixels that are evenly spread.
 pub struct Rendered {
     size: [usize; 2],
     pixels: Vec<[i32; 2]>,
@@ -55,7 +55,7 @@ impl Rendered {
     ///
     /// # Errors
     /// [`crate::Error::Gl`] where the driver refuses.
-    pub fn take(renderer: &mut Renderer, plan: &Plan, frame: Frame, stride: u32) -> Result<Self> {
+    pub fn take(field: &mut Field, plan: &Plan, frame: Frame, stride: u32) -> Result<Self> {
         let window = frame.window;
         let size = [window.width.div_ceil(stride), window.height.div_ceil(stride)];
         // The middle of each square, so that the picture and its squares lie on each other.
@@ -63,7 +63,7 @@ impl Rendered {
         let at = |k: u32| [k % size[0], k / size[0]];
         let pixel = |[i, j]: [u32; 2]| [window.x + middle(i, window.width), window.y + middle(j, window.height)];
         let pixels: Vec<_> = (0..size[0] * size[1]).map(|k| pixel(at(k))).collect();
-        let values = renderer.probe(frame, &pixels)?;
+        let values = field.probe(frame, &pixels)?;
         let unit = plan.scale.map(|scale| scale * plan.tolerance);
         Ok(Self { size: size.map(|side| side as usize), pixels, values, unit, frame })
     }

@@ -3,12 +3,12 @@
 use egui::{Color32, ColorImage};
 
 use crate::Result;
-use crate::chart::Map;
 use crate::choices::Evaluator;
+use crate::false_colour::Map;
 use crate::frame::Frame;
 use crate::plan::{self, HIGHEST_DEGREE, Plan, Request};
 use crate::reference;
-use crate::renderer::Renderer;
+use crate::renderer::Field;
 use crate::scene::Ghost;
 
 /// The most points of a cut.
@@ -57,7 +57,7 @@ pub(super) struct Section {
 }
 
 impl Section {
-    pub fn take(renderer: &mut Renderer, cut: Cut, frame: Frame) -> Result<Self> {
+    pub fn take(field: &mut Field, cut: Cut, frame: Frame) -> Result<Self> {
         let window = frame.window;
         let (length, across) =
             if cut.horizontal { (window.width, window.height) } else { (window.height, window.width) };
@@ -69,7 +69,7 @@ impl Section {
             [window.x + i, window.y + j]
         };
         let pixels: Vec<_> = (0..count).map(pixel).collect();
-        let rendered = renderer.probe(frame, &pixels)?;
+        let rendered = field.probe(frame, &pixels)?;
         Ok(Self { horizontal: cut.horizontal, frame, pixels, rendered })
     }
 
@@ -87,19 +87,19 @@ impl Section {
 }
 
 /// The error that the series in the plan's period is predicted to have, for degrees about the plan's.
-pub(super) fn convergence(ghosts: &[Ghost], plan: &Plan, frame: Frame) -> Vec<Degree> {
+pub(super) fn convergence(plan: &Plan) -> Vec<Degree> {
     const STEPS: u32 = 12;
-    let series = plan.evaluator != Evaluator::Direct;
-    let around = if series { plan.degree[0].max(plan.degree[1]).max(8) } else { 64 };
+    let series = plan.evaluator() != Evaluator::Direct;
+    let around = if series { plan.degree()[0].max(plan.degree()[1]).max(8) } else { 64 };
     let most = (around + around / 2).min(HIGHEST_DEGREE);
     let request = Request {
-        period: series.then_some(plan.period),
+        period: series.then_some(plan.period()),
         evaluator: Some(Evaluator::Rows),
-        ..Request::new(frame, plan.tolerance)
+        ..Request::new(plan.tolerance)
     };
     let predict = |step: u32| {
         let degree = (most * step).div_ceil(STEPS);
-        let planned = plan::plan(ghosts, &Request { degree: Some([degree; 2]), ..request }).ok()?;
+        let planned = plan::plan(plan.problem(), &Request { degree: Some([degree; 2]), ..request }).ok()?;
         Some(Degree { degree, truncation: planned.predicted.truncation, total: planned.predicted.total() })
     };
     (1..=STEPS).filter_map(predict).collect()

@@ -4,13 +4,13 @@ use glam::DVec2;
 use vglare::Error;
 use vglare::frame::Frame;
 use vglare::gpu::Backend;
-use vglare::plan::{Evaluator, Plan, Request, plan};
+use vglare::plan::{Evaluator, Plan, Request};
 use vglare::scene::Ghost;
 use vglare::series::{Bell, SineGaussian, VonMises};
 
 use super::{measured, request};
-use crate::support::on_backend;
 use crate::support::scenes::{self, Chance};
+use crate::support::{on_backend, plan};
 
 const SCENES: u64 = 200;
 
@@ -75,12 +75,12 @@ fn scene(seed: u64) -> Scene {
     for evaluator in [turn, None] {
         let mut asked = tolerance;
         for _ in 0..3 {
-            let asked_for = Request { evaluator, ..request(frame, asked) };
-            match plan(&ghosts, &asked_for) {
+            let asked_for = Request { evaluator, ..request(asked) };
+            match plan(&ghosts, frame, &asked_for) {
                 Ok(plan) => {
                     let name = format!("scene {seed}, {} x {}, {} ghosts", frame.width, frame.height, ghosts.len());
                     return Scene {
-                        name: format!("{name}, {}, {asked:.1e}", plan.evaluator),
+                        name: format!("{name}, {}, {asked:.1e}", plan.evaluator()),
                         frame,
                         ghosts,
                         plan,
@@ -125,7 +125,7 @@ fn two_hundred_scenes_keep_the_promise() {
         println!("{name}: predicted / measured = {ratio:.2}");
     }
     for evaluator in Evaluator::ALL {
-        println!("{evaluator}: {} scenes", scenes.iter().filter(|scene| scene.plan.evaluator == evaluator).count());
+        println!("{evaluator}: {} scenes", scenes.iter().filter(|scene| scene.plan.evaluator() == evaluator).count());
     }
     let values: Vec<f64> = ratios.iter().map(|(ratio, _)| *ratio).collect();
     let [low, median, high] = [0.25, 0.5, 0.75].map(|part| quantile(&values, part));

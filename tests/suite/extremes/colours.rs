@@ -3,12 +3,12 @@
 use vglare::frame::Frame;
 use vglare::gpu::Backend;
 use vglare::photo::{self, Depth, Photo, WriteOptions};
-use vglare::plan::{Evaluator, Request, plan};
+use vglare::plan::{Evaluator, Request};
 use vglare::renderer::{Normalize, Settings};
 use vglare::scene::Ghost;
 
 use super::{every_choice, look, request};
-use crate::support::{glare, on_backend, on_each_backend, plan_with, scenes};
+use crate::support::{glare, on_backend, on_one_backend, plan, plan_with, scenes};
 
 fn frame() -> Frame {
     Frame::full(65, 37)
@@ -28,8 +28,8 @@ fn looked_at(name: &str, ghosts: &[Ghost], tolerance: f64) {
         let mut had = 0;
         for evaluator in every_choice() {
             let chosen = evaluator.map_or("the plan's choice".into(), |evaluator| evaluator.to_string());
-            let asked_for = Request { evaluator, ..request(frame(), tolerance) };
-            had += usize::from(look(renderer, &format!("{name}, {chosen}"), ghosts, &asked_for).is_some());
+            let asked_for = Request { evaluator, ..request(tolerance) };
+            had += usize::from(look(renderer, &format!("{name}, {chosen}"), ghosts, frame(), &asked_for).is_some());
         }
         assert!(had > 0, "{name}: no evaluator can do it");
     });
@@ -58,7 +58,7 @@ fn radiances_from_1e_30_to_1e30_in_one_scene() {
 fn a_faint_ghost_survives_a_blinding_one_out_of_reach() {
     let faint = scenes::one([0.0, 0.0], 0.4, [1e-3, 2e-3, 3e-3]);
     let blinding = scenes::one([1000.0, 0.0], 0.4, [1e35; 3]);
-    let plan = plan(&[faint.clone(), blinding], &request(frame(), 1e-3)).unwrap();
+    let plan = plan(&[faint.clone(), blinding], frame(), &request(1e-3)).unwrap();
     assert_eq!((plan.ghosts(), plan.dropped), (1, 1));
     for (scale, radiance) in plan.scale.iter().zip(faint.radiance) {
         assert!((scale / radiance - 1.0).abs() < 1e-3, "{:?}", plan.scale);
@@ -78,7 +78,7 @@ fn denormal_radiances_are_nothing_to_a_picture_and_something_to_the_plan() {
 fn fields_beyond_f32_are_refused() {
     let plain = scenes::sized(5, 6, frame(), 0.3, 0.8);
     for radiance in [1e38, 1e100, 1e307] {
-        let error = plan(&gain(&plain, [1.0, radiance, 1.0]), &request(frame(), 1e-3)).unwrap_err().to_string();
+        let error = plan(&gain(&plain, [1.0, radiance, 1.0]), frame(), &request(1e-3)).unwrap_err().to_string();
         assert!(error.contains("the field reaches"), "{error}");
     }
     looked_at("just below", &gain(&plain, [3e36, 1.0, 1e-6]), 1e-3);
@@ -101,7 +101,7 @@ fn equal_and_opposite_ghosts() {
     looked_at("opposites a little aside", &[plain.clone(), moved].concat(), 1e-2);
     // All but 1e-9: f32 cannot, and says so.
     let nearly = gain(&plain, [-1.0 + 1e-9; 3]);
-    let error = plan(&[plain, nearly].concat(), &request(frame(), 1e-3)).unwrap_err();
+    let error = plan(&[plain, nearly].concat(), frame(), &request(1e-3)).unwrap_err();
     assert!(matches!(error, vglare::Error::ToleranceBelowFloor { floor, .. } if floor > 1.0), "{error}");
 }
 
@@ -115,12 +115,12 @@ fn flat_fields_have_no_contrast_to_stretch() {
         ("what cancels", vec![scenes::one([0.3, 0.1], 1.0, [1.0; 3]), scenes::one([0.3, 0.1], 1.0, [-1.0; 3])]),
     ];
     let settings = Settings { normalize: Normalize::Minmax, ..Settings::default() };
-    on_each_backend(|backend, renderer| {
+    on_one_backend(|backend, renderer| {
         for (name, ghosts) in &flat {
             for evaluator in Evaluator::ALL {
                 let plan = plan_with(ghosts, frame(), 1e-4, evaluator);
-                let field = glare(renderer, ghosts, &plan, frame());
-                let range = renderer.range(frame()).unwrap();
+                let field = glare(renderer, &plan, frame());
+                let range = renderer.field.range(frame()).unwrap();
                 let stretched = renderer.glare(frame(), &settings).unwrap();
                 assert!(field.as_flattened().iter().all(|value| value.is_finite()), "{name}");
                 let black = stretched.iter().all(|pixel| pixel[..3] == [0.0; 3]);
@@ -135,13 +135,13 @@ fn flat_fields_have_no_contrast_to_stretch() {
 #[test]
 fn weak_contrast_is_stretched_all_the_same() {
     let settings = Settings { normalize: Normalize::Minmax, ..Settings::default() };
-    on_each_backend(|backend, renderer| {
+    on_one_backend(|backend, renderer| {
         for size in [3.0, 30.0, 100.0] {
             let ghosts = [scenes::one([0.3, 0.1], size, [1.0; 3])];
             for evaluator in Evaluator::ALL {
                 let plan = plan_with(&ghosts, frame(), 1e-5, evaluator);
-                renderer.set_scene(&ghosts, &plan).unwrap();
-                let [low, high] = renderer.range(frame()).unwrap();
+                renderer.field.set_scene(&plan).unwrap();
+                let [low, high] = renderer.field.range(frame()).unwrap();
                 let stretched = renderer.glare(frame(), &settings).unwrap();
                 let ends = stretched
                     .iter()
@@ -167,7 +167,7 @@ fn half_floats_near_their_end() {
     let mut pixels = vec![[0.0, 0.0, 0.5, 1.0]; 33];
     on_backend(Backend::ALL[0], |renderer| {
         let plan = plan_with(&ghosts, frame, 1e-4, Evaluator::Rows);
-        renderer.set_scene(&ghosts, &plan).unwrap();
+        renderer.field.set_scene(&plan).unwrap();
         renderer.composite(frame, &mut pixels, &Settings::default()).unwrap();
     });
     let photo = Photo::new(33, 1, pixels.clone());

@@ -2,17 +2,17 @@
 
 use glam::DVec2;
 use vglare::frame::Frame;
-use vglare::plan::{Request, plan};
+use vglare::plan::Request;
 use vglare::scene::Ghost;
 
-use crate::support::scenes;
+use crate::support::{plan, scenes};
 
 const FRAME: Frame = Frame::full(16, 9);
 
 #[track_caller]
 fn refused(ghost: Ghost, says: &str) {
     let plain = scenes::one([0.0, 0.0], 0.5, [1.0; 3]);
-    let error = plan(&[plain.clone(), ghost, plain], &Request::new(FRAME, 1e-2)).unwrap_err().to_string();
+    let error = plan(&[plain.clone(), ghost, plain], FRAME, &Request::new(1e-2)).unwrap_err().to_string();
     assert!(error.contains("ghost 2 has") && error.contains(says), "{error}");
 }
 
@@ -45,8 +45,8 @@ fn centres_and_radiances_that_are_none() {
 fn periods_that_are_none() {
     let ghosts = [scenes::one([0.0, 0.0], 0.5, [1.0; 3])];
     for period in [0.0, -3.0, f64::NAN, f64::INFINITY] {
-        let request = Request { period: Some(DVec2::new(4.0, period)), ..Request::new(FRAME, 1e-2) };
-        let error = plan(&ghosts, &request).unwrap_err().to_string();
+        let request = Request { period: Some(DVec2::new(4.0, period)), ..Request::new(1e-2) };
+        let error = plan(&ghosts, FRAME, &request).unwrap_err().to_string();
         assert!(error.contains("period"), "{error}");
     }
 }

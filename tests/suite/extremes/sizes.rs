@@ -50,8 +50,8 @@ fn sizes_from_a_thousandth_of_a_pixel_to_a_hundred_periods() {
                     for evaluator in choices(&bell) {
                         let chosen = evaluator.map_or("the plan's choice".into(), |evaluator| evaluator.to_string());
                         let what = format!("{bell} of {pixels:e} pixels {place}, {chosen}");
-                        let asked_for = Request { evaluator, ..request(frame(), tolerance) };
-                        had += usize::from(look(renderer, &what, &ghosts, &asked_for).is_some());
+                        let asked_for = Request { evaluator, ..request(tolerance) };
+                        had += usize::from(look(renderer, &what, &ghosts, frame(), &asked_for).is_some());
                     }
                     assert!(had > 0, "{bell} of {pixels:e} pixels {place}: no evaluator can do it");
                 }
@@ -72,7 +72,7 @@ fn bells_a_hundred_times_as_wide_as_their_period_are_predicted_as_they_come() {
                 for evaluator in series(&bell) {
                     let what = format!("{bell} of {times} periods, {evaluator}");
                     let (period, evaluator) = (Some(period), Some(evaluator));
-                    look(renderer, &what, &ghosts, &Request { period, evaluator, ..request(frame(), 1e-2) });
+                    look(renderer, &what, &ghosts, frame(), &Request { period, evaluator, ..request(1e-2) });
                 }
             }
         }
@@ -90,7 +90,7 @@ fn a_period_as_wide_as_the_picture_or_shorter_is_predicted_as_it_comes() {
                 for evaluator in series(&bell) {
                     let what = format!("{bell}, a period of {part} pictures, {evaluator}");
                     let (period, evaluator) = (Some(part * picture), Some(evaluator));
-                    look(renderer, &what, &ghosts, &Request { period, evaluator, ..request(frame, 0.1) });
+                    look(renderer, &what, &ghosts, frame, &Request { period, evaluator, ..request(0.1) });
                 }
             }
         }
@@ -116,8 +116,8 @@ fn ghosts_a_million_units_away() {
             let mut had = 0;
             for evaluator in every_choice() {
                 let chosen = evaluator.map_or("the plan's choice".into(), |evaluator| evaluator.to_string());
-                let asked_for = Request { evaluator, ..request(frame(), 1e-3) };
-                if let Some(outcome) = look(renderer, &format!("{name}, {chosen}"), ghosts, &asked_for) {
+                let asked_for = Request { evaluator, ..request(1e-3) };
+                if let Some(outcome) = look(renderer, &format!("{name}, {chosen}"), ghosts, frame(), &asked_for) {
                     had += 1;
                     assert!(dropped.is_none_or(|dropped| outcome.plan.dropped == dropped), "{name}");
                 }
@@ -140,8 +140,8 @@ fn pictures_of_one_pixel_and_of_16384_pixels_a_side() {
             for evaluator in every_choice() {
                 let chosen = evaluator.map_or("the plan's choice".into(), |evaluator| evaluator.to_string());
                 let what = format!("{width} x {height} pixels, {chosen}");
-                let asked_for = Request { evaluator, ..request(frame, 1e-4) };
-                look(renderer, &what, &ghosts, &asked_for).unwrap_or_else(|| panic!("{what}: no plan"));
+                let asked_for = Request { evaluator, ..request(1e-4) };
+                look(renderer, &what, &ghosts, frame, &asked_for).unwrap_or_else(|| panic!("{what}: no plan"));
             }
         }
     });
@@ -159,8 +159,8 @@ fn sizes_at_the_ends_of_what_f32_holds() {
                 for evaluator in choices(&bell) {
                     let chosen = evaluator.map_or("the plan's choice".into(), |evaluator| evaluator.to_string());
                     let what = format!("{bell} of size {size:.1e}, {chosen}");
-                    let asked_for = Request { evaluator, ..request(frame(), 1e-3) };
-                    had += usize::from(look(renderer, &what, &ghosts, &asked_for).is_some());
+                    let asked_for = Request { evaluator, ..request(1e-3) };
+                    had += usize::from(look(renderer, &what, &ghosts, frame(), &asked_for).is_some());
                 }
                 assert!(had > 0, "{bell} of size {size:e}: no evaluator can do it");
             }

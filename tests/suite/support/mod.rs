@@ -2,24 +2,38 @@
 
 pub mod check;
 pub mod scenes;
+mod stage;
 pub mod table;
+
+pub use stage::{on_backend, on_device, on_fresh_renderer, on_live};
 
 use std::cell::RefCell;
 use std::rc::{Rc, Weak};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use vglare::Result;
 use vglare::frame::Frame;
-use vglare::gpu::{Backend, Device};
-use vglare::plan::{Evaluator, Plan, Request, plan};
-use vglare::renderer::{Renderer, Settings};
+use vglare::gpu::Backend;
+use vglare::plan::{self, Evaluator, Plan, Request};
+use vglare::problem::Problem;
+use vglare::renderer::{Picture, Settings};
 use vglare::scene::Ghost;
 
-/// Runs `test` once on each backend, each with a thread and a context of its own: a context is current on one thread,
-/// and a thread has one current context.
+/// Runs `test` once on each backend, with what [`on_backend`] gives.
+///
+/// It is for tests of what may differ between the two: how a context comes about, what is its default, which way up its
+/// rows go, how pixels come and go; and for one test of each pass (spectrum, each evaluator, range, composite, view, mask,
+/// Graf), since each has a copy of Mesa's code generator. That all evaluators give the same bits by both is a test of its
+/// own (`evaluators`): what else is a matter of numbers is held to them by [`on_one_backend`].
 ///
 /// Fails where a backend gives no context: a machine without GL has not run these tests.
-pub fn on_each_backend<T: Send>(test: impl Fn(Backend, &mut Renderer) -> T + Sync) -> Vec<T> {
+pub fn on_each_backend<T: Send>(test: impl Fn(Backend, &mut Picture) -> T + Sync) -> Vec<T> {
     Backend::ALL.into_iter().map(|backend| on_backend(backend, |renderer| test(backend, renderer))).collect()
+}
+
+/// Runs `test` on the backend that tests of numbers use.
+pub fn on_one_backend<T: Send>(test: impl FnOnce(Backend, &mut Picture) -> T + Send) -> T {
+    on_backend(Backend::ALL[0], |renderer| test(Backend::ALL[0], renderer))
 }
 
 /// A test's turn at GL, for as long as it is kept.
@@ -42,29 +56,30 @@ pub fn turn() -> Turn {
     })
 }
 
-/// Runs `test` with a fresh renderer of one backend.
-pub fn on_backend<T: Send>(backend: Backend, test: impl FnOnce(&mut Renderer) -> T + Send) -> T {
-    let run = || {
-        let _turn = turn();
-        let device = Device::open(&[backend]).unwrap_or_else(|error| panic!("these tests need GL: {error}"));
-        test(&mut Renderer::new(&device).unwrap())
-    };
-    let name = format!("{} on {backend}", std::thread::current().name().unwrap_or("a test"));
-    std::thread::scope(|scope| {
-        let thread = std::thread::Builder::new().name(name).spawn_scoped(scope, run).unwrap();
-        thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-    })
+/// The cheapest plan for ghosts on a picture.
+pub fn plan(ghosts: &[Ghost], frame: Frame, request: &Request) -> Result<Plan> {
+    plan::plan(&Problem::new(ghosts, frame), request)
+}
+
+/// The same at the floor of 32-bit floats, where that lies above the tolerance.
+pub fn plan_at_least(ghosts: &[Ghost], frame: Frame, request: &Request) -> Result<Plan> {
+    plan::plan_at_least(&Problem::new(ghosts, frame), request)
+}
+
+/// The most accurate plan within a budget in milliseconds.
+pub fn plan_within(ghosts: &[Ghost], frame: Frame, request: &Request, budget: f64) -> Result<Plan> {
+    plan::plan_within(&Problem::new(ghosts, frame), request, budget)
 }
 
 /// The plan of one evaluator that leaves everything else to vglare.
 pub fn plan_with(ghosts: &[Ghost], frame: Frame, tolerance: f64, evaluator: Evaluator) -> Plan {
-    let request = Request { evaluator: Some(evaluator), ..Request::new(frame, tolerance) };
-    plan(ghosts, &request).unwrap_or_else(|error| panic!("{evaluator} at {tolerance:e}: {error}"))
+    let request = Request { evaluator: Some(evaluator), ..Request::new(tolerance) };
+    plan(ghosts, frame, &request).unwrap_or_else(|error| panic!("{evaluator} at {tolerance:e}: {error}"))
 }
 
 /// The glare alone, at every pixel of the frame's window.
-pub fn glare(renderer: &mut Renderer, ghosts: &[Ghost], plan: &Plan, frame: Frame) -> Vec<[f32; 4]> {
-    renderer.set_scene(ghosts, plan).unwrap();
+pub fn glare(renderer: &mut Picture, plan: &Plan, frame: Frame) -> Vec<[f32; 4]> {
+    renderer.field.set_scene(plan).unwrap();
     renderer.glare(frame, &Settings::default()).unwrap()
 }
 

@@ -61,6 +61,14 @@ pub fn sized(seed: u64, count: usize, frame: Frame, smallest: f64, largest: f64)
     (0..count).map(ghost).collect()
 }
 
+/// A ghost of a bell, of a size from a pixel to two pictures.
+pub fn of(chance: &mut Chance, bell: Bell, frame: Frame) -> Ghost {
+    let half = frame.half_width();
+    let center = DVec2::new(chance.between(-1.3 * half, 1.3 * half), chance.between(-1.3, 1.3));
+    let size = DVec2::splat(chance.octaves(frame.pixel_size(), 4.0));
+    Ghost { bell, center, size, radiance: [(); 3].map(|()| chance.octaves(0.05, 2.0)) }
+}
+
 /// One round ghost.
 pub fn one(center: [f64; 2], size: f64, radiance: [f64; 3]) -> Ghost {
     Ghost { bell: Bell::Gaussian, center: center.into(), size: DVec2::splat(size), radiance }

@@ -1,0 +1,52 @@
+// `direct` in 64-bit floats from the pixel's position to the sum: for what 32 bits would move or lose, a steep flank, a bell
+// far from the picture for its size, light that cancels. The formulas, and their order, are those of `frame` and
+// `reference`, so that a pixel on a rim falls on the same side of it.
+#include BELL
+
+struct Ghost {
+    dvec2 center;
+    dvec2 size;
+    double red, green, blue; // radiance
+    uint bell;               // where its parameters begin, and its kind where there are several
+    uint pad;
+};
+// As in `direct`, with half as many that fit 64 KiB.
+#ifdef MANY_GHOSTS
+layout(std430, binding = BINDING_GHOSTS) readonly buffer Ghosts {
+    Ghost ghosts[];
+};
+const uint STEP = 8u;
+#else
+layout(std140, binding = BINDING_FEW_GHOSTS) uniform Ghosts {
+    Ghost ghosts[1024];
+};
+const uint STEP = 1u;
+#endif
+layout(std140, binding = BINDING_DIRECT) uniform Direct {
+    ivec2 corner;   // of the tile, in pixels of the picture
+    ivec2 size;     // of the picture, in pixels
+    uint ghost_count; // a multiple of STEP; the last ones may have no weight
+    vec2 unit;      // of `direct`
+    double aspect;  // a pixel's width over its height
+};
+
+vec3 glare(ivec2 pixel) {
+    ivec2 p = corner + pixel;
+    precise double x = aspect * double(2 * p.x + 1 - size.x) / double(size.y);
+    precise double y = double(size.y - 2 * p.y - 1) / double(size.y);
+    double red = 0.0lf, green = 0.0lf, blue = 0.0lf;
+    for (uint base = 0u; base < ghost_count; base += 64u) {
+        uint last = min(base + 64u, ghost_count);
+        for (uint first = base; first < last; first += STEP) {
+            for (uint k = 0u; k < STEP; ++k) {
+                Ghost ghost = ghosts[first + k];
+                precise dvec2 offset = dvec2(x, y) - ghost.center;
+                double value = bell_value(offset, ghost.size, ghost.bell);
+                red += ghost.red * value;
+                green += ghost.green * value;
+                blue += ghost.blue * value;
+            }
+        }
+    }
+    return vec3(red, green, blue);
+}

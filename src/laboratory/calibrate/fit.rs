@@ -1,0 +1,167 @@
+//! From times to constants: each from a pair of arms that differ in its work, round by round.
+
+use std::rc::Rc;
+
+use super::arms::{Arm, Arms, moments, place};
+use crate::gpu::Device;
+use crate::measure::{Rounds, Samples};
+use crate::plan::{CostModel, GRID_PASSES};
+use crate::{Error, Result};
+
+/// One constant of the cost model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Constant {
+    /// Nanoseconds: the median of the rounds, or the built-in ratio to the others where that told nothing.
+    pub value: f64,
+    /// From the smallest to the largest of the rounds, in parts of the median; none where it is by ratio.
+    pub spread: Option<f64>,
+}
+
+/// What was measured, in the order of [`CostModel::NAMES`].
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Fitted {
+    pub constants: [Constant; CostModel::COUNT],
+}
+
+impl Fitted {
+    pub fn model(&self) -> CostModel {
+        CostModel::from_values(self.constants.map(|constant| constant.value))
+    }
+}
+
+/// Measures every constant on a device.
+///
+/// # Errors
+/// [`Error::Gl`] where the driver refuses, or where most constants drown in noise.
+pub(super) fn measure(device: &Rc<Device>, rounds: Rounds) -> Result<Fitted> {
+    let mut arms = Arms::new(device)?;
+    let times = arms.time(rounds)?;
+    let rounds: Vec<[f64; CostModel::COUNT]> = times.iter().map(|times| constants(&arms.all, times)).collect();
+    fitted(&rounds)
+}
+
+/// The constants of one round in nanoseconds, from the milliseconds of each arm.
+fn constants(arms: &[Arm], times: &[f64]) -> [f64; CostModel::COUNT] {
+    use place::*;
+    let more = |[low, high]: [usize; 2]| 1e6 * (times[high] - times[low]);
+    let terms = |[low, high]: [usize; 2]| arms[high].plan.terms() as f64 - arms[low].plan.terms() as f64;
+    let ghosts = |[low, high]: [usize; 2]| arms[high].plan.ghosts() as f64 - arms[low].plan.ghosts() as f64;
+    let harmonics = |index: usize| f64::from(arms[index].plan.degree()[0] + 1);
+    let nodes = |index: usize| arms[index].plan.lattice().map_or([0.0; 2], |lattice| lattice.nodes.map(f64::from));
+
+    let bell = more(DIRECT) / (arms[DIRECT[0]].pixels() * ghosts(DIRECT));
+    let term = more(SERIES) / (arms[SERIES[0]].pixels() * terms(SERIES));
+    let [few, long, wide] = ROWS;
+    let (pixels, rows) = (arms[few].pixels(), arms[few].rows());
+    let profile = more([few, long]) / (rows * terms([few, long]));
+    let profiles = rows * terms([few, wide]) * profile;
+    let harmonic = (more([few, wide]) - profiles) / (pixels * (harmonics(wide) - harmonics(few)));
+    let [coarse, fine, spread] = GRID;
+    let ([columns, lines], [more_columns, _]) = (nodes(coarse), nodes(fine));
+    let lattice = lines * (more_columns - columns) * harmonics(fine) * harmonic;
+    let strip = (more([coarse, fine]) - lattice) / ((more_columns - columns) * arms[fine].rows());
+    // The same lattice under a wider picture, less what a wider picture costs anyway.
+    let wider = arms[spread].pixels() - arms[coarse].pixels();
+    let interpolation = (more([coarse, spread]) - more([COPY, COPY_WIDE])) / wider;
+    let modes = arms[SPECTRUM[0]].plan.terms() as f64;
+    let spectrum = more(SPECTRUM) / (ghosts(SPECTRUM) * modes);
+    let moment = more(MOMENTS) / (ghosts(MOMENTS) * moments(&arms[MOMENTS[0]].plan));
+    let pass = 1e6 * times[TINY] / GRID_PASSES;
+    [bell, term, harmonic, profile, strip, interpolation, spectrum, moment, pass]
+}
+
+/// The medians of the rounds; what is lost in noise follows the others.
+///
+/// # Errors
+/// [`Error::Gl`] where half of the constants or more are.
+fn fitted(rounds: &[[f64; CostModel::COUNT]]) -> Result<Fitted> {
+    let built_in = CostModel::default().values();
+    let samples: [Samples; CostModel::COUNT] = std::array::from_fn(|k| rounds.iter().map(|round| round[k]).collect());
+    let told =
+        samples.each_ref().map(|samples| Some(samples.median()).filter(|&value| value.is_finite() && value > 0.0));
+    let ratios: Samples =
+        told.iter().zip(built_in).filter_map(|(value, built_in)| Some((*value)? / built_in)).collect();
+    let count = told.iter().flatten().count();
+    if 2 * count <= told.len() {
+        return Err(Error::Gl(format!(
+            "of {} constants {count} could be told from noise; is the machine busy with something else?",
+            told.len()
+        )));
+    }
+    let ratio = ratios.median();
+    let constant = |k: usize| match told[k] {
+        Some(value) => Constant { value, spread: Some(samples[k].spread()) },
+        None => Constant { value: ratio * built_in[k], spread: None },
+    };
+    Ok(Fitted { constants: std::array::from_fn(constant) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_lost_in_noise_follows_the_others() {
+        let built_in = CostModel::default().values();
+        let mut round = built_in.map(|value| 0.25 * value);
+        round[4] = -1.0;
+        let fitted = fitted(&[round, round]).unwrap();
+        let [expected, got] = [built_in.map(|value| 0.25 * value), fitted.model().values()];
+        assert!(expected.iter().zip(got).all(|(a, b)| (a / b - 1.0).abs() < 1e-12), "{got:?}");
+        let scaled: Vec<_> = fitted.constants.iter().map(|constant| constant.spread.is_none()).collect();
+        assert_eq!(scaled, [false, false, false, false, true, false, false, false, false]);
+        assert!(fitted.model().is_sound());
+    }
+
+    #[test]
+    fn noise_alone_is_no_calibration() {
+        let mut round = CostModel::default().values();
+        round[..CostModel::COUNT.div_ceil(2)].fill(f64::NAN);
+        assert!(fitted(&[round]).is_err());
+    }
+
+    #[test]
+    fn the_median_of_the_rounds_counts() {
+        let built_in = CostModel::default().values();
+        let rounds = [1.0, 100.0, 2.0].map(|factor| built_in.map(|value| factor * value));
+        assert_eq!(fitted(&rounds).unwrap().model().values(), built_in.map(|value| 2.0 * value));
+    }
+
+    /// Times made of known constants give these back.
+    #[test]
+    fn the_fit_inverts_the_cost_model() {
+        let _turn = crate::gpu::tests::turn();
+        let device = Device::open(&crate::gpu::Backend::ALL).expect("these tests need GL");
+        let arms = Arms::new(&device).unwrap().all;
+        let known = CostModel { bell: 3.0, strip: 19.0, interpolation: 11.0, ..CostModel::default() };
+        let times: Vec<f64> = arms.iter().enumerate().map(|(k, arm)| expected(&known, k, arm)).collect();
+        let found = constants(&arms, &times);
+        for ((name, found), known) in CostModel::NAMES.iter().zip(found).zip(known.values()) {
+            assert!((found / known - 1.0).abs() < 1e-9, "{name}: {found} for {known}");
+        }
+    }
+
+    /// Milliseconds of an arm by the cost model, with 4 ns a pixel for a copy or a composite.
+    fn expected(model: &CostModel, index: usize, arm: &Arm) -> f64 {
+        use place::*;
+        let plan = &arm.plan;
+        let terms = plan.terms() as f64;
+        let harmonics = f64::from(plan.degree()[0] + 1);
+        let rows = |rows: f64, columns: f64| rows * terms * model.profile + rows * columns * harmonics * model.harmonic;
+        let base = 4.0 * arm.pixels();
+        let nanoseconds = match index {
+            COPY | COPY_WIDE => base,
+            k if DIRECT.contains(&k) => base + arm.pixels() * plan.ghosts() as f64 * model.bell,
+            k if SERIES.contains(&k) => base + arm.pixels() * terms * model.term,
+            k if ROWS.contains(&k) => base + rows(arm.rows(), arm.pixels() / arm.rows()),
+            k if SPECTRUM.contains(&k) => plan.ghosts() as f64 * terms * model.spectrum,
+            k if MOMENTS.contains(&k) => plan.ghosts() as f64 * moments(plan) * model.moment,
+            TINY => GRID_PASSES * model.pass,
+            _ => {
+                let [columns, lines] = plan.lattice().unwrap().nodes.map(f64::from);
+                base + rows(lines, columns) + columns * arm.rows() * model.strip + arm.pixels() * model.interpolation
+            }
+        };
+        1e-6 * nanoseconds
+    }
+}

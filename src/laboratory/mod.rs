@@ -1,0 +1,19 @@
+//! The laboratory: what is measured and drawn instead of applied to photos.
+//!
+//! | module | what it does |
+//! | --- | --- |
+//! | [`chart`] | numbers → charts and pictures in false colours |
+//! | `page` | a page of results, and the folder that it lies in |
+//! | [`rex`] | the research prototype's experiments, as figures and numbers |
+//! | [`tradeoff`] | a photo and its ghosts → accuracy against time, measured here |
+//! | [`harmonics`] | a photo → its spherical harmonic coefficients |
+//! | [`bench`] | what each pass costs here, as ratios |
+//! | [`calibrate`] | the cost model of plans, fitted to this machine |
+
+pub mod bench;
+pub mod calibrate;
+pub mod chart;
+pub mod harmonics;
+mod page;
+pub mod rex;
+pub mod tradeoff;

@@ -1,0 +1,140 @@
+//! `vglare tradeoff`: what accuracy costs, for one photo here.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use comfy_table::{CellAlignment, Table, presets};
+
+use super::{Results, Subject, exponent, short};
+use crate::gpu::Device;
+use crate::laboratory::tradeoff;
+use crate::options::BackendChoice;
+use crate::options::CalibrationArgs;
+use crate::options::FindArgs;
+use crate::options::ReadArgs;
+use crate::options::SceneArgs;
+use crate::terminal::progress::Progress;
+use crate::terminal::stderr::warn;
+use crate::terminal::stdout;
+use crate::{Result, photo};
+
+/// Show what accuracy costs for a photo on this machine
+///
+/// Varies the tolerance, the evaluator, the degree, the lattice, the number of ghosts and the picture's size, measures
+/// the time and the error of each against the direct sum in 64-bit floats, and writes a folder: a page that recommends a
+/// tolerance and shows why, plots, error maps, and all numbers as CSV and JSON.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// The photo: OpenEXR, Radiance HDR, PFM, TIFF, PNG or JPEG
+    photo: PathBuf,
+
+    /// The folder to write to; index.html in it is the page
+    #[arg(short, long, value_name = "FOLDER")]
+    output: PathBuf,
+
+    /// Fewer settings, fewer rounds, smaller pictures: a minute or two instead of many without a graphics card
+    #[arg(long)]
+    quick: bool,
+
+    /// Write into a folder even if it holds other files
+    #[arg(long)]
+    force: bool,
+
+    /// Print nothing but errors
+    #[arg(short, long)]
+    quiet: bool,
+
+    /// Where OpenGL comes from; auto takes the first that gives OpenGL 4.3
+    #[arg(long, value_enum, default_value_t = BackendChoice::Auto)]
+    backend: BackendChoice,
+
+    #[command(flatten)]
+    reading: ReadArgs,
+
+    #[command(flatten)]
+    scene: SceneArgs,
+
+    #[command(flatten)]
+    find: FindArgs,
+
+    #[command(flatten)]
+    calibration: CalibrationArgs,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  vglare tradeoff night.exr -o trade --quick
+  vglare tradeoff night.exr -o trade --preset vintage-uncoated
+  vglare tradeoff night.exr -o trade --scene scene.toml
+
+A folder that an earlier run has written is written anew.";
+
+/// Measures, writes and prints the planner's choices.
+///
+/// # Errors
+///
+/// [`crate::Error::Occupied`] where the folder holds other files; [`crate::Error::Write`] where a file cannot be
+/// written; [`crate::Error::Usage`] where nothing glares; and those of reading the photo and the scene.
+pub fn run(args: &Args) -> Result<()> {
+    let progress = Progress::start(args.quiet);
+    let inputs: Vec<_> = std::iter::once(args.photo.clone()).chain(args.scene.files()).collect();
+    tradeoff::spare(&args.output, &inputs)?;
+    let mut look = args.scene.look()?;
+    look.find = args.find.over(look.find);
+    progress.say("reading the photo");
+    let photo = photo::read_with(&args.photo, &args.reading.options())?;
+    warn(&photo.source.notes);
+    progress.say("finding the lights");
+    let scene = look.gather(&photo);
+    let name = name(&args.photo);
+    let subject = Subject::new(&name, &photo, &scene.ghosts)?;
+    tradeoff::check(&args.output, args.force)?;
+    let device = Device::open(args.backend.backends())?;
+    let known = args.calibration.known(Some(device.info()));
+    warn(&known.warning);
+    let costs = known.file.is_some().then_some(known.model);
+    let results = tradeoff::measure(&subject, &device, costs, args.quick, &mut |what, done| progress.part(what, done))?;
+    progress.say("writing");
+    let index = tradeoff::write(&args.output, &results)?;
+    drop(progress);
+    if args.quiet { Ok(()) } else { stdout::print(|out| summary(out, &results, &index)) }
+}
+
+/// A file's name without its folder.
+fn name(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+fn summary(out: &mut dyn Write, results: &Results, index: &Path) -> io::Result<()> {
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING);
+    table.set_header(["tolerance", "evaluator", "degree", "predicted", "measured", "ΔE2000", "ms"]);
+    let mut refusals = Vec::new();
+    for point in results.choices() {
+        let asked = point.asked.map(exponent).unwrap_or_default();
+        if let Some(reason) = &point.refused {
+            refusals.push(format!("{asked}: {reason}"));
+            continue;
+        }
+        let error = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.1e}"));
+        let number = |value: Option<f64>| value.map_or("-".to_owned(), short);
+        let evaluator = point.evaluator.map(|evaluator| evaluator.to_string()).unwrap_or_default();
+        let [predicted, measured] = [point.predicted, point.measured].map(error);
+        let [delta_e, ms] = [point.delta_e_max, point.ms].map(number);
+        table.add_row([asked, evaluator, point.degree(), predicted, measured, delta_e, ms]);
+    }
+    table.column_iter_mut().skip(2).for_each(|column| column.set_cell_alignment(CellAlignment::Right));
+    let [width, height] = results.swept;
+    writeln!(
+        out,
+        "The planner's choices at {width} × {height}, {} ghosts, {}",
+        results.ghosts, results.device.renderer
+    )?;
+    writeln!(out, "{}", table.trim_fmt())?;
+    refusals.iter().try_for_each(|refusal| writeln!(out, "{refusal}"))?;
+    if let Some(recommendation) = &results.recommendation {
+        writeln!(out, "{}", recommendation.sentence())?;
+    }
+    writeln!(out, "wrote {}", index.display())
+}

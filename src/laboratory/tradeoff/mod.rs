@@ -1,0 +1,175 @@
+//! The whole trade of speed for accuracy, for one photo and its ghosts, on one device.
+//!
+//! [`measure`] runs the sweeps one after the other and gathers [`Results`]; [`write()`] puts them into a folder as tables,
+//! plots, pictures and a page. Errors are held against the direct sum in f64; times are medians of rounds in turns.
+
+mod bench;
+mod captions;
+pub mod command;
+mod front;
+mod looks;
+mod page;
+mod phases;
+mod plots;
+mod point;
+mod sample;
+mod study;
+mod sweeps;
+mod write;
+
+use std::rc::Rc;
+
+use serde::Serialize;
+
+use crate::gpu::{Device, Info};
+use crate::photo::Photo;
+use crate::plan::{CostModel, Evaluator, Request};
+use crate::scene::Ghost;
+use crate::{Error, Result};
+
+pub use front::{Crossover, Recommendation, exponent, short};
+pub use phases::PhaseCurve;
+pub use point::{Point, Storage, Sweep};
+pub use write::{check, spare, write};
+
+use looks::Looks;
+use study::Study;
+
+/// What is measured: a photo and what glares in it.
+pub struct Subject<'a> {
+    name: &'a str,
+    photo: &'a Photo,
+    ghosts: &'a [Ghost],
+}
+
+impl<'a> Subject<'a> {
+    /// A photo, by a name for people, and what glares in it.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where nothing glares.
+    pub fn new(name: &'a str, photo: &'a Photo, ghosts: &'a [Ghost]) -> Result<Self> {
+        if ghosts.is_empty() {
+            return Err(Error::Usage(format!(
+                "nothing glares in {name}: --lights or --scene can say what does, --threshold find fainter lights"
+            )));
+        }
+        Ok(Self { name, photo, ghosts })
+    }
+}
+
+/// Hears how much of a sweep is done, from 0 to 1.
+pub type Watch<'a> = &'a mut dyn FnMut(f64);
+
+/// All that was measured.
+#[derive(Serialize)]
+pub struct Results {
+    vglare: &'static str,
+    pub photo: String,
+    /// The photo's size, and that of the picture that the sweeps ran at.
+    pub picture: [u32; 2],
+    pub swept: [u32; 2],
+    pub ghosts: usize,
+    pub quick: bool,
+    /// Rounds that each time is the median of, and pixels that each error is the largest of.
+    pub rounds: usize,
+    pub sample: usize,
+    pub device: Info,
+    /// Whether the planner reckoned with costs that were measured on this machine.
+    pub calibrated: bool,
+    pub recommendation: Option<Recommendation>,
+    pub points: Vec<Point>,
+    /// The points on the front of the tolerance sweep, by their index, the fastest first.
+    pub front: Vec<usize>,
+    pub crossovers: Vec<Crossover>,
+    /// The period that the phases' stability was measured in, and the turns of the highest harmonic that the planner
+    /// takes at the picture's border.
+    pub phase_period: f64,
+    pub phase_reach: Option<f64>,
+    pub phases: Vec<PhaseCurve>,
+    #[serde(skip)]
+    looks: Looks,
+}
+
+/// The sweeps by what they are called while they run, and roughly the part of the whole time that each takes.
+const STAGES: [(&str, f64); 7] = [
+    ("tolerances", 0.22),
+    ("degrees", 0.12),
+    ("lattices", 0.1),
+    ("storage", 0.04),
+    ("numbers of ghosts", 0.3),
+    ("sizes", 0.17),
+    ("pictures", 0.05),
+];
+
+/// Runs all sweeps, with plans by what was measured of this machine's costs, or else by the built-in ones; `watch` hears
+/// what is going on, and how much of all is done, from 0 to 1.
+///
+/// # Errors
+/// [`Error::Gl`] where the driver refuses, [`Error::Chart`] where an error map cannot be drawn.
+pub fn measure(
+    subject: &Subject<'_>,
+    device: &Rc<Device>,
+    costs: Option<CostModel>,
+    quick: bool,
+    watch: &mut dyn FnMut(&'static str, f64),
+) -> Result<Results> {
+    let mut study = Study::new(subject, device, costs.unwrap_or_default(), quick)?;
+    let mut stages = STAGES.iter().scan(0.0, |before, &(name, part)| {
+        *before += part;
+        Some((name, *before - part, part))
+    });
+    let mut stage = |run: &mut dyn FnMut(Watch<'_>) -> Result<()>| {
+        let (name, before, part) = stages.next().unwrap_or(("the rest", 1.0, 0.0));
+        watch(name, before);
+        run(&mut |done: f64| watch(name, before + part * done))
+    };
+    let mut points = Vec::new();
+    stage(&mut |watch| sweeps::tolerance(&mut study, watch).map(|found| points.extend(found)))?;
+    stage(&mut |watch| sweeps::degree(&mut study, watch).map(|found| points.extend(found)))?;
+    stage(&mut |watch| sweeps::oversampling(&mut study, watch).map(|found| points.extend(found)))?;
+    stage(&mut |watch| sweeps::storage(&mut study, watch).map(|found| points.extend(found)))?;
+    stage(&mut |watch| sweeps::ghosts(&mut study, watch).map(|found| points.extend(found)))?;
+    let tolerance = front::choice(&points).and_then(|point| point.asked).unwrap_or(1e-3);
+    stage(&mut |watch| sweeps::size(&mut study, tolerance, watch).map(|found| points.extend(found)))?;
+    let front = front::front(&points);
+    let mut looks = Looks::default();
+    stage(&mut |watch| looks::looks(&mut study, &points, &front, watch).map(|found| looks = found))?;
+    let mut recommendation = front::recommend(&points);
+    if let Some(found) = &mut recommendation
+        && let Some(measured) = study.everywhere(found.tolerance, [found.width, found.height])?
+    {
+        (found.measured, found.everywhere) = (found.measured.max(measured), true);
+    }
+    let seen = front::choice(&points).and_then(|point| looks.delta_e(point));
+    // Whichever evaluator the planner takes, the phases are those of a series.
+    let tight = study.tightest(|request| Request { evaluator: Some(Evaluator::Rows), ..request });
+    let period =
+        tight.as_ref().filter(|(_, plan)| plan.terms() > 0).map_or_else(|| wide(&study), |(_, p)| p.period().x);
+    Ok(Results {
+        vglare: env!("CARGO_PKG_VERSION"),
+        photo: subject.name.to_owned(),
+        picture: [subject.photo.width(), subject.photo.height()],
+        swept: [study.photo.width(), study.photo.height()],
+        ghosts: subject.ghosts.len(),
+        quick,
+        rounds: study.bench.rounds.timed(),
+        sample: study.sample.pixels.len(),
+        device: device.info().clone(),
+        calibrated: costs.is_some(),
+        recommendation: recommendation.map(|found| found.seen(seen.unwrap_or(0.0))),
+        crossovers: front::crossovers(&points),
+        phase_reach: tight
+            .map(|(_, plan)| f64::from(plan.degree()[0]) * 0.5 * wide(&study) / period)
+            .filter(|&n| n >= 1.0),
+        phases: phases::curves(study.photo.frame, period),
+        phase_period: period,
+        points,
+        front,
+        looks,
+    })
+}
+
+/// The picture's width in half its heights.
+fn wide(study: &Study<'_>) -> f64 {
+    2.0 * f64::from(study.photo.width()) / f64::from(study.photo.height())
+}

@@ -1,0 +1,163 @@
+//! One thing that was measured: a row of results.csv.
+
+use serde::Serialize;
+
+use super::bench::Timing;
+use super::sample::Quality;
+use crate::Error;
+use crate::frame::Frame;
+use crate::plan::{Evaluator, Plan};
+
+/// What was varied.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Sweep {
+    /// The tolerance, for each evaluator and for the planner's own choice.
+    Tolerance,
+    /// The degree, in a fixed period.
+    Degree,
+    /// The nodes of `grid`'s lattice.
+    Oversampling,
+    /// The format of the spectrum's terms.
+    Storage,
+    /// The number of ghosts.
+    Ghosts,
+    /// The picture's size.
+    Size,
+}
+
+/// How the spectrum's terms are stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Storage {
+    /// 32-bit floats, as vglare has them.
+    Float,
+    /// Rounded as 16-bit floats would be.
+    Half,
+}
+
+/// A setting with what it costs and how exact it is. What does not apply or was not measured is none. Errors are
+/// relative to the field's largest value of the same colour, times are medians in milliseconds.
+#[derive(Debug, Clone, Serialize)]
+pub struct Point {
+    pub sweep: Sweep,
+    pub ghosts: usize,
+    /// The picture's size in pixels.
+    pub width: u32,
+    pub height: u32,
+    /// The tolerance that was asked for.
+    pub asked: Option<f64>,
+    /// Whether the planner chooses this where no evaluator is named.
+    pub planner: bool,
+    /// None where the planner found no plan.
+    pub evaluator: Option<Evaluator>,
+    pub period_x: Option<f64>,
+    pub period_y: Option<f64>,
+    pub degree_x: Option<u32>,
+    pub degree_y: Option<u32>,
+    pub terms: Option<usize>,
+    /// Nodes a half wave of the highest harmonic, the fewer of x and y.
+    pub oversampling: Option<f64>,
+    pub storage: Storage,
+    /// The plan's bound.
+    pub predicted: Option<f64>,
+    /// The largest error at the sample's pixels.
+    pub measured: Option<f64>,
+    pub rms: Option<f64>,
+    /// Of the tone-mapped composite, in dB.
+    pub psnr_db: Option<f64>,
+    /// ΔE2000 of the tone-mapped composite, the largest and the mean.
+    pub delta_e_max: Option<f64>,
+    pub delta_e_mean: Option<f64>,
+    /// Spectrum, field and composite.
+    pub ms: Option<f64>,
+    pub least_ms: Option<f64>,
+    pub most_ms: Option<f64>,
+    /// The spectrum alone.
+    pub spectrum_ms: Option<f64>,
+    /// The part of the picture that was drawn to measure the field's time.
+    pub timed_share: Option<f64>,
+    /// Why there is no plan.
+    pub refused: Option<String>,
+}
+
+impl Point {
+    /// A plan, not measured yet.
+    pub(super) fn planned(sweep: Sweep, frame: Frame, asked: Option<f64>, plan: &Plan) -> Self {
+        let series = plan.evaluator() != Evaluator::Direct;
+        Self {
+            evaluator: Some(plan.evaluator()),
+            period_x: series.then_some(plan.period().x),
+            period_y: series.then_some(plan.period().y),
+            degree_x: series.then_some(plan.degree()[0]),
+            degree_y: series.then_some(plan.degree()[1]),
+            terms: series.then_some(plan.terms()),
+            oversampling: plan.lattice().map(|lattice| lattice.oversampling.min_element()),
+            predicted: Some(plan.predicted.total()),
+            ..Self::empty(sweep, frame, plan.ghosts() + plan.dropped, asked)
+        }
+    }
+
+    /// A request without a plan.
+    pub(super) fn refused(sweep: Sweep, frame: Frame, ghosts: usize, asked: Option<f64>, reason: &Error) -> Self {
+        Self { refused: Some(reason.reason()), ..Self::empty(sweep, frame, ghosts, asked) }
+    }
+
+    fn empty(sweep: Sweep, frame: Frame, ghosts: usize, asked: Option<f64>) -> Self {
+        Self {
+            sweep,
+            ghosts,
+            width: frame.width,
+            height: frame.height,
+            asked,
+            planner: false,
+            evaluator: None,
+            period_x: None,
+            period_y: None,
+            degree_x: None,
+            degree_y: None,
+            terms: None,
+            oversampling: None,
+            storage: Storage::Float,
+            predicted: None,
+            measured: None,
+            rms: None,
+            psnr_db: None,
+            delta_e_max: None,
+            delta_e_mean: None,
+            ms: None,
+            least_ms: None,
+            most_ms: None,
+            spectrum_ms: None,
+            timed_share: None,
+            refused: None,
+        }
+    }
+
+    pub(super) fn with_quality(self, quality: &Quality) -> Self {
+        Self {
+            measured: Some(quality.measured),
+            rms: Some(quality.rms),
+            psnr_db: Some(quality.psnr),
+            delta_e_max: Some(quality.delta_e),
+            delta_e_mean: Some(quality.delta_e_mean),
+            ..self
+        }
+    }
+
+    pub(super) fn with_timing(self, timing: &Timing) -> Self {
+        Self {
+            ms: Some(timing.whole.median()),
+            least_ms: Some(timing.whole.min()),
+            most_ms: Some(timing.whole.max()),
+            spectrum_ms: Some(timing.spectrum.median()),
+            timed_share: Some(timing.share),
+            ..self
+        }
+    }
+
+    /// The degree in words; a dash where there is none.
+    pub fn degree(&self) -> String {
+        self.degree_x.zip(self.degree_y).map_or("–".to_owned(), |(n, m)| format!("{n} × {m}"))
+    }
+}

@@ -1,0 +1,140 @@
+//! The command line that does what the window does.
+
+use std::path::Path;
+
+use glam::DVec2;
+
+use crate::look::{Accuracy, Look, LookLens, LookLights};
+use crate::scene::{FindOptions, Goal};
+use crate::{Error, Result};
+
+/// The `vglare apply` that lays `look` over `photo` and writes `output`, quoted for a POSIX shell: with an option for
+/// whatever is not as by default, or, where options cannot say it all, with `file`, which must hold the look.
+///
+/// # Errors
+/// [`Error::Usage`] where the look needs a file and there is none, and for a path that no command line can have.
+pub fn command_line(look: &Look, photo: &Path, output: &Path, file: Option<&Path>) -> Result<String> {
+    let mut words = vec!["vglare".into(), "apply".into(), word(photo)?, "-o".into(), word(output)?];
+    match file {
+        _ if !needs_file(look) => words.extend(options(look)?),
+        Some(file) => words.extend(["--scene".into(), word(file)?]),
+        None => {
+            let reason = "lights, ghosts or a lens by hand need a file: save the look first";
+            return Err(Error::Usage(reason.into()));
+        }
+    }
+    let refused = |error| Error::Usage(format!("no command line can say this: {error}"));
+    shlex::try_join(words.iter().map(String::as_str)).map_err(refused)
+}
+
+/// Whether there are no options that say the same.
+fn needs_file(look: &Look) -> bool {
+    matches!(look.lens, LookLens::Own(_)) || look.lights != LookLights::Found || !look.ghosts.is_empty()
+}
+
+/// A path as a word that is no option.
+fn word(path: &Path) -> Result<String> {
+    let text = path.to_str().ok_or_else(|| Error::Usage(format!("the name {} is no text", path.display())))?;
+    Ok(if text.starts_with('-') { format!("./{text}") } else { text.to_owned() })
+}
+
+/// The options for what is not as by default.
+fn options(look: &Look) -> Result<Vec<String>> {
+    let default = Look::default();
+    let mut options = Options::default();
+    match &look.lens {
+        LookLens::File(path, _) => options.add("--lens", word(path)?),
+        LookLens::Preset(lens) if look.lens != default.lens => options.add("--preset", &lens.name),
+        LookLens::Preset(_) | LookLens::Own(_) => {}
+    }
+    options.changed("--axis", look.axis, default.axis, pair);
+    let FindOptions { threshold, merge, max_lights, firefly_limit } = look.find;
+    options.given("--threshold", threshold, |x| x.to_string());
+    options.changed("--merge", merge, default.find.merge, |x| x.to_string());
+    options.changed("--max-lights", max_lights, default.find.max_lights, |n| n.to_string());
+    options.changed("--firefly-limit", firefly_limit, default.find.firefly_limit, |x| x.to_string());
+    options.changed("--strength", look.strength, default.strength, |x| x.to_string());
+    options.changed("--size", look.size, default.size, |x| x.to_string());
+    options.changed("--tint", look.tint, default.tint, |[r, g, b]| format!("{r},{g},{b}"));
+    options.changed("--mix", look.mix, default.mix, name);
+    options.changed("--normalize", look.normalize, default.normalize, name);
+    let Accuracy { goal, allow_floor, degree, period, evaluator } = look.accuracy;
+    match goal {
+        Goal::Tolerance(_) if goal == default.accuracy.goal => {}
+        Goal::Tolerance(tolerance) => options.add("--tolerance", tolerance),
+        Goal::Budget(budget) => options.add("--budget", budget),
+    }
+    if allow_floor {
+        options.0.push("--allow-floor".into());
+    }
+    options.given("--degree", degree, |[n, m]| format!("{n},{m}"));
+    options.given("--period", period, pair);
+    options.given("--evaluator", evaluator, |evaluator| evaluator.to_string());
+    Ok(options.0)
+}
+
+#[derive(Default)]
+struct Options(Vec<String>);
+
+impl Options {
+    fn add(&mut self, option: &str, value: impl ToString) {
+        self.0.extend([option.to_owned(), value.to_string()]);
+    }
+
+    fn given<T>(&mut self, option: &str, value: Option<T>, text: impl FnOnce(T) -> String) {
+        if let Some(value) = value {
+            self.add(option, text(value));
+        }
+    }
+
+    fn changed<T: PartialEq>(&mut self, option: &str, value: T, default: T, text: impl FnOnce(T) -> String) {
+        self.given(option, (value != default).then_some(value), text);
+    }
+}
+
+fn pair(DVec2 { x, y }: DVec2) -> String {
+    format!("{x},{y}")
+}
+
+/// What a choice is called on the command line.
+fn name(choice: impl clap::ValueEnum) -> String {
+    choice.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::presets;
+
+    fn line(look: &Look) -> String {
+        command_line(look, Path::new("night.exr"), Path::new("out.png"), None).unwrap()
+    }
+
+    #[test]
+    fn what_is_as_by_default_is_not_said() {
+        assert_eq!(line(&Look::default()), "vglare apply night.exr -o out.png");
+        let look = Look { strength: 1.5, lens: LookLens::preset("zoom").unwrap(), ..Look::default() };
+        assert_eq!(line(&look), "vglare apply night.exr -o out.png --preset zoom --strength 1.5");
+    }
+
+    #[test]
+    fn names_are_quoted_and_are_no_options() {
+        let line = command_line(&Look::default(), Path::new("-my $HOME's.exr"), Path::new("a\nb.png"), None).unwrap();
+        let words = ["vglare", "apply", "./-my $HOME's.exr", "-o", "a\nb.png"];
+        assert_eq!(shlex::split(&line).unwrap(), words, "{line}");
+        let nul = command_line(&Look::default(), Path::new("a\0b"), Path::new("b"), None);
+        assert!(matches!(nul, Err(Error::Usage(_))));
+    }
+
+    #[test]
+    fn what_options_cannot_say_needs_a_file() {
+        let own = Look { lens: LookLens::Own(presets::named("zoom").unwrap().ghosts), ..Look::default() };
+        let listed = Look { lights: LookLights::Listed(Vec::new()), ..Look::default() };
+        for look in [own, listed] {
+            let (photo, output) = (Path::new("a.exr"), Path::new("b.exr"));
+            assert!(matches!(command_line(&look, photo, output, None), Err(Error::Usage(_))));
+            let line = command_line(&look, photo, output, Some(Path::new("my look.toml"))).unwrap();
+            assert_eq!(line, "vglare apply a.exr -o b.exr --scene 'my look.toml'");
+        }
+    }
+}

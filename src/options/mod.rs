@@ -1,0 +1,16 @@
+//! The options that more than one command has, and the command line that says a look.
+
+mod accuracy;
+mod backend;
+mod command_line;
+mod find;
+pub(crate) mod numbers;
+mod reading;
+mod scene;
+
+pub use accuracy::{AccuracyArgs, CalibrationArgs};
+pub use backend::BackendChoice;
+pub use command_line::command_line;
+pub use find::FindArgs;
+pub use reading::ReadArgs;
+pub use scene::SceneArgs;

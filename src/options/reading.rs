@@ -1,0 +1,71 @@
+//! How photos are read.
+
+use clap::ValueEnum;
+use glam::DVec2;
+
+use crate::Result;
+use crate::options::numbers::finite;
+use crate::photo::{Missing, Primaries, ReadOptions};
+
+/// How photos are read.
+#[derive(Debug, Clone, Copy, clap::Args)]
+#[command(next_help_heading = "Reading")]
+pub struct ReadArgs {
+    /// The primaries of the photo's numbers, whatever its file says of them: rec709, p3-d65, rec2020, adobe-rgb,
+    /// prophoto, acescg, aces2065-1, xyz, or the chromaticities RX,RY,GX,GY,BX,BY,WX,WY [default: the file's]
+    #[arg(long, value_name = "NAME", value_parser = primaries)]
+    primaries: Option<Primaries>,
+
+    /// What becomes of pixels that an unfinished OpenEXR file lacks
+    #[arg(long, value_enum, default_value_t = MissingArg::Refuse)]
+    missing: MissingArg,
+}
+
+/// `--missing`.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum MissingArg {
+    /// The file is refused
+    Refuse,
+    /// They are 0
+    Zero,
+}
+
+impl ReadArgs {
+    /// The library's options.
+    pub fn options(self) -> ReadOptions {
+        let missing = match self.missing {
+            MissingArg::Refuse => Missing::Refuse,
+            MissingArg::Zero => Missing::Zero,
+        };
+        ReadOptions { missing, primaries: self.primaries }
+    }
+}
+
+/// Primaries by a name, or by eight chromaticities.
+fn primaries(text: &str) -> Result<Primaries, String> {
+    if let Some(primaries) = Primaries::named(text) {
+        return Ok(primaries);
+    }
+    let numbers: Result<Vec<f64>, String> = text.split(',').map(|part| finite(part.trim())).collect();
+    let numbers = numbers.ok().and_then(|numbers| <[f64; 8]>::try_from(numbers).ok());
+    let points = numbers.map(|n| [0, 2, 4, 6].map(|k| DVec2::new(n[k], n[k + 1])));
+    let span = points.and_then(|[red, green, blue, white]| Primaries { red, green, blue, white }.sound());
+    let names = Primaries::NAMES.map(|(name, _)| name).join(", ");
+    span.ok_or_else(|| {
+        format!("expected one of {names}, or eight chromaticities that span a colour space, RX,RY,GX,GY,BX,BY,WX,WY")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn primaries_are_named_or_listed() {
+        assert_eq!(primaries("acescg").unwrap(), Primaries::ACESCG);
+        assert_eq!(primaries("0.64,0.33, 0.30,0.60, 0.15,0.06, 0.3127,0.3290").unwrap(), Primaries::REC709);
+        for bad in ["aces", "0.64,0.33", "0.3,0.3,0.3,0.3,0.3,0.3,0.3,0.3", "nan,0,0,0,0,0,0,0", ""] {
+            assert!(primaries(bad).unwrap_err().contains("rec2020"), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! The plan that one evaluator asks for.
+
+use std::sync::Arc;
+
+use super::period::{self, Reach};
+use super::series::{self, Wide};
+use super::weigh::{self, Weighed};
+use super::{Evaluator, Group, Layer, Plan, Precision, Prediction, Request, cost, direct, rounding, share, terms};
+use crate::problem::Problem;
+use crate::{Error, Result};
+
+/// The part of the tolerance that a series needs for its own bounds.
+const NEEDED: f64 = 0.25;
+
+/// What all evaluators' plans begin with.
+pub(super) struct Survey {
+    pub weighed: Weighed,
+    pub groups: Vec<Group>,
+    pub reaches: Vec<Reach>,
+    /// Groups that are no part of the series, and what floats of the precision cost their sum.
+    pub summed: Vec<Group>,
+    pub summed_in: (Precision, f64),
+}
+
+impl Survey {
+    pub fn new(problem: &Problem, request: &Request) -> Self {
+        let weighed = weigh::weigh(problem, request.tolerance);
+        let groups = terms::group(problem.ghosts(), &weighed);
+        let reaches = period::reaches(problem, &weighed);
+        Self { weighed, groups, reaches, summed: Vec::new(), summed_in: Default::default() }
+    }
+}
+
+/// The plan that one evaluator asks for.
+///
+/// # Errors
+/// [`Error::ToleranceBelowFloor`] where f32 cannot be as exact; [`Error::Plan`] where there is no such series.
+pub(super) fn candidate(
+    problem: &Arc<Problem>,
+    survey: &Survey,
+    wide: Option<&Wide>,
+    request: &Request,
+    evaluator: Evaluator,
+) -> Result<Plan> {
+    if evaluator == Evaluator::Direct {
+        let bounds = direct::bounds(problem, &survey.weighed);
+        let single = with_rounding(problem, (Precision::Single, bounds.single), survey, wide, request, evaluator);
+        return match single {
+            Err(Error::ToleranceBelowFloor { .. }) => {
+                with_rounding(problem, (Precision::Double, bounds.double), survey, wide, request, evaluator)
+            }
+            single => single,
+        };
+    }
+    // What rounding costs depends on the degree, and the degree on what rounding leaves of the tolerance.
+    let mut degree = request.degree.map_or(rounding::SEEN_DEGREE, |[n, m]| n.max(m));
+    loop {
+        let (precision, summed) = survey.summed_in;
+        let mut rounding = rounding::bound(&survey.weighed, evaluator, degree) + summed;
+        if rounding > (1.0 - NEEDED) * request.tolerance
+            && let Some(wide) = wide
+        {
+            rounding = rounding.min(wide.rounding(evaluator) + summed);
+        }
+        let plan = with_rounding(problem, (precision, rounding), survey, wide, request, evaluator)?;
+        let needed = plan.degree()[0].max(plan.degree()[1]);
+        if needed <= degree {
+            return Ok(plan);
+        }
+        degree = needed + needed / 16;
+    }
+}
+
+/// The plan of one evaluator that rounding costs so much, its summed ghosts in floats of this precision.
+fn with_rounding(
+    problem: &Arc<Problem>,
+    (precision, rounding): (Precision, f64),
+    survey: &Survey,
+    wide: Option<&Wide>,
+    request: &Request,
+    evaluator: Evaluator,
+) -> Result<Plan> {
+    let weighed = &survey.weighed;
+    // With the whole of the series given, there is nothing left to plan: the error is predicted as it comes.
+    let given = request.period.is_some() && request.degree.is_some();
+    let usable = request.tolerance - rounding;
+    // A direct sum leaves out nothing but ghosts; a series needs room for its own bounds.
+    let needed = if evaluator == Evaluator::Direct { share::DROPPED } else { NEEDED };
+    if usable < needed * request.tolerance && !given {
+        return Err(Error::ToleranceBelowFloor { asked: request.tolerance, floor: rounding / (1.0 - needed) });
+    }
+    let storage = rounding::stored(weighed, evaluator).min(rounding);
+    let mut predicted =
+        Prediction { dropped: weighed.dropped_error, rounding: rounding - storage, storage, ..Prediction::default() };
+    let mut layers = Vec::new();
+    if evaluator == Evaluator::Direct {
+        layers.push(Layer::direct(survey.groups.iter().cloned()));
+    } else {
+        let (series, with_series) =
+            series::plan_series(evaluator, survey, wide, problem.frame(), request, predicted, usable)?;
+        predicted = with_series;
+        layers.push(Layer::Series(series));
+        if !survey.summed.is_empty() {
+            layers.push(Layer::direct(survey.summed.iter().cloned()));
+        }
+    }
+    let plan = Plan {
+        tolerance: request.tolerance,
+        precision,
+        scale: weighed.scale,
+        peaks: weighed.peaks.clone(),
+        dropped: weighed.dropped,
+        predicted,
+        costs: vec![cost::estimate(&layers, precision, problem.frame(), &request.cost_model)],
+        ..Plan::by_hand(problem.clone(), layers)
+    };
+    // `direct` takes eight ghosts a round where there are many, and a few rounds more to gather them.
+    let rounds = match evaluator {
+        Evaluator::Direct => plan.ghosts() / 7,
+        Evaluator::Series => plan.terms() + plan.counts().len() + plan.summed(),
+        Evaluator::Rows | Evaluator::Grid => 0,
+    };
+    if rounds > request.loop_rounds {
+        return Err(Error::Plan(format!("{evaluator} would need more rounds of a loop than this renderer runs")));
+    }
+    Ok(plan)
+}

@@ -1,0 +1,196 @@
+//! The plan itself: what was decided, by whom it can be read and told.
+
+use std::sync::Arc;
+
+use glam::DVec2;
+use serde::{Serialize, Serializer};
+
+use super::layer::Told;
+use super::{Cost, Evaluator, Group, Lattice, Layer, Modes, Precision, Prediction, Refusal, Series};
+use crate::problem::Problem;
+
+/// What was decided for a problem: the layers whose sum is the field, with the error and the cost that are expected.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    pub(super) problem: Arc<Problem>,
+    pub(super) layers: Vec<Layer>,
+    /// The tolerance that it was made for.
+    pub tolerance: f64,
+    /// The floats in which the summed ghosts are computed, where there are any.
+    pub precision: Precision,
+    /// The field's largest value or, where it is not known exactly, a lower bound of it, RGB; the field is computed in
+    /// units of it.
+    pub scale: [f64; 3],
+    /// Pixels, as columns and rows of the picture, at which the field was found large.
+    pub peaks: Vec<[i32; 2]>,
+    /// How many ghosts cannot reach the picture within the tolerance, and are left out.
+    pub dropped: usize,
+    /// The error that the plan expects at most.
+    pub predicted: Prediction,
+    /// The cost that the plan expects, and that of the evaluators it decided against, the cheapest first.
+    pub costs: Vec<Cost>,
+    /// The evaluators that could not be had, and why.
+    pub refused: Vec<Refusal>,
+}
+
+impl Plan {
+    /// A plan by hand, which promises nothing: these layers, in units of 1, at any error and any cost.
+    ///
+    /// The layers' groups name ghosts of the problem. The first series is the only one that is rendered, and the first sum.
+    pub fn by_hand(problem: Arc<Problem>, layers: Vec<Layer>) -> Self {
+        Self {
+            problem,
+            layers,
+            tolerance: f64::INFINITY,
+            precision: Precision::default(),
+            scale: [1.0; 3],
+            peaks: Vec::new(),
+            dropped: 0,
+            predicted: Prediction::default(),
+            costs: Vec::new(),
+            refused: Vec::new(),
+        }
+    }
+
+    /// The same plan with its series changed by hand; what it predicts stays as it was.
+    pub fn with_series(mut self, change: impl Fn(&mut Series)) -> Self {
+        for layer in &mut self.layers {
+            if let Layer::Series(series) = layer {
+                let modes = series.modes.take();
+                let (period, counts) = (series.period, series.counts.clone());
+                change(series);
+                series.modes = modes.filter(|_| series.period == period && series.counts == counts);
+            }
+        }
+        self
+    }
+
+    /// The same plan, its spectrum left to the device, ghost by ghost, even where the plan has computed it.
+    pub fn without_modes(mut self) -> Self {
+        for layer in &mut self.layers {
+            if let Layer::Series(series) = layer {
+                series.modes = None;
+            }
+        }
+        self
+    }
+
+    /// What it solves.
+    pub fn problem(&self) -> &Arc<Problem> {
+        &self.problem
+    }
+
+    /// The parts of the field.
+    pub fn layers(&self) -> &[Layer] {
+        &self.layers
+    }
+
+    /// Its series, if it has one.
+    pub fn series(&self) -> Option<&Series> {
+        self.layers.iter().find_map(|layer| if let Layer::Series(series) = layer { Some(series) } else { None })
+    }
+
+    /// How the field is computed: by its series where it has one, whether ghosts are summed beside it or not.
+    pub fn evaluator(&self) -> Evaluator {
+        self.series().map_or(Evaluator::Direct, |series| series.evaluator)
+    }
+
+    /// The series' period in x and y; 1 where there is no series.
+    pub fn period(&self) -> DVec2 {
+        self.series().map_or(DVec2::ONE, |series| series.period)
+    }
+
+    /// Highest harmonic in x and y.
+    pub fn degree(&self) -> [u32; 2] {
+        self.series().map_or([0; 2], Series::degree)
+    }
+
+    /// How many harmonics of y are kept beside harmonic n of x; none where there is no series.
+    pub fn counts(&self) -> &[u32] {
+        self.series().map_or(&[], |series| &series.counts)
+    }
+
+    /// How many modes the series keeps.
+    pub fn terms(&self) -> usize {
+        self.series().map_or(0, Series::terms)
+    }
+
+    /// The lattice, where the evaluator is `grid`.
+    pub fn lattice(&self) -> Option<&Lattice> {
+        self.series().and_then(|series| series.lattice.as_ref())
+    }
+
+    /// How long it took to compute the modes that become the spectrum, in milliseconds by the wall clock; 0 where the
+    /// spectrum is left to the device.
+    pub fn spectrum_milliseconds(&self) -> f64 {
+        self.series().and_then(|series| series.modes.as_ref()).map_or(0.0, Modes::milliseconds)
+    }
+
+    /// The groups of all layers.
+    pub fn groups(&self) -> impl Iterator<Item = &Group> {
+        self.layers.iter().flat_map(Layer::groups)
+    }
+
+    /// How many ghosts the field is made of.
+    pub fn ghosts(&self) -> usize {
+        self.groups().map(|group| group.members.len()).sum()
+    }
+
+    /// How many of them are summed directly at every pixel: all by `direct`, a few or none beside a series.
+    pub fn summed(&self) -> usize {
+        self.summed_groups().map(|group| group.members.len()).sum()
+    }
+
+    /// The groups of those.
+    pub fn summed_groups(&self) -> impl Iterator<Item = &Group> {
+        let summed = |layer: &&Layer| matches!(layer, Layer::Direct(_));
+        self.layers.iter().filter(summed).flat_map(Layer::groups)
+    }
+
+    /// What it is expected to cost, in milliseconds.
+    pub fn cost(&self) -> Option<f64> {
+        self.costs.first().map(|cost| cost.milliseconds)
+    }
+}
+
+impl Serialize for Plan {
+    /// By keys that scripts read.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Keys<'a> {
+            tolerance: f64,
+            evaluator: Evaluator,
+            precision: Precision,
+            period: DVec2,
+            degree: [u32; 2],
+            terms: usize,
+            groups: Vec<&'a Group>,
+            lattice: Option<&'a Lattice>,
+            scale: [f64; 3],
+            dropped: usize,
+            predicted: &'a Prediction,
+            costs: &'a [Cost],
+            refused: &'a [Refusal],
+            layers: Vec<Told>,
+        }
+        let Self { problem: _, layers, tolerance, precision, scale, peaks: _, dropped, predicted, costs, refused } =
+            self;
+        let keys = Keys {
+            tolerance: *tolerance,
+            evaluator: self.evaluator(),
+            precision: *precision,
+            period: self.period(),
+            degree: self.degree(),
+            terms: self.terms(),
+            groups: self.groups().collect(),
+            lattice: self.lattice(),
+            scale: *scale,
+            dropped: *dropped,
+            predicted,
+            costs,
+            refused,
+            layers: layers.iter().map(Told::from).collect(),
+        };
+        keys.serialize(serializer)
+    }
+}

@@ -1,0 +1,281 @@
+//! What floats cost the direct sum: unlike a series, each bell is off by no more than it is itself, or as steep, at the
+//! nearest pixel.
+
+use std::f64::consts::{PI, TAU};
+use std::ops::Range;
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use super::weigh::{Weighed, along};
+use crate::frame::Frame;
+use crate::problem::Problem;
+use crate::scene::Ghost;
+use crate::series::{Bell, Modes, Shape};
+
+/// The floats in which ghosts are summed at every pixel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Precision {
+    /// 32 bits: positions, bells and sums.
+    #[default]
+    Single,
+    /// 64 bits: for flanks so steep, bells so small or light that so cancels that 32 would show.
+    Double,
+}
+
+impl Precision {
+    /// How many times as long as in 32 bits a bell takes on llvmpipe, which does half as many 64-bit floats at a time and
+    /// has no exponential of them.
+    pub(super) fn slower(self) -> f64 {
+        match self {
+            Self::Single => 1.0,
+            Self::Double => 5.0,
+        }
+    }
+}
+
+/// What the direct sum is off by at any pixel, at most, in the floats of either precision.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Bounds {
+    pub single: f64,
+    pub double: f64,
+}
+
+impl Bounds {
+    /// The precision that leaves a bound of at most so much, if only the larger one can; and its bound.
+    pub fn within(self, budget: f64) -> (Precision, f64) {
+        if self.single <= budget { (Precision::Single, self.single) } else { (Precision::Double, self.double) }
+    }
+}
+
+/// Half a unit in the last place of an f32.
+const HALF_A_UNIT: f64 = 0.5 * f32::EPSILON as f64;
+
+/// The error, for each unit of weight, of a bell and its addition in f32 where its exponent is small: about twice the worst
+/// that tests/suite/rounding.rs has seen on Mesa's software renderer.
+const PER_WEIGHT: f64 = 4.5e-7;
+
+/// What is left where all is f64: the field is stored in f32, and glare is its product with a scale that is rounded too.
+const STORED: f64 = 3.0 * HALF_A_UNIT;
+
+/// And in f64, where functions are off by some units of 2⁻⁵³, and for each addition.
+const PER_WEIGHT_DOUBLE: f64 = 2e-15;
+const PER_ADDITION_DOUBLE: f64 = 0.5 * f64::EPSILON;
+
+/// What f32 may shift a pixel by, for each unit of its position: that is a product of two numbers that are rounded, and is
+/// rounded itself.
+const PER_POSITION: f64 = 2.0 * HALF_A_UNIT;
+/// And the offset, for each unit of it: a difference, times one over the size, which is rounded.
+const PER_OFFSET: f64 = 3.0 * HALF_A_UNIT;
+/// The square of it as a profile's table has it, both rounded: half of that in the radius.
+const PER_RADIUS: f64 = 1.5 * HALF_A_UNIT;
+/// The sine that a sine-Gaussian's mean is taken from, absolutely.
+const SINE: f64 = 3.0 * HALF_A_UNIT;
+
+/// Ghosts that are looked at in every cell of the finer division, and in those of the coarser one.
+const FEW: usize = 4096;
+/// Cells along each side of the window.
+const CELLS: [usize; 2] = [8, 4];
+
+/// The bounds: the worst of some cells of the window, in each of which every ghost is as far away as the cell.
+pub(super) fn bounds(problem: &Problem, weighed: &Weighed) -> Bounds {
+    let (ghosts, frame) = (problem.ghosts(), problem.frame());
+    let kept = weighed.weights.iter().filter(|&&weight| weight > 0.0).count();
+    let cells = Cells::new(frame, CELLS[usize::from(kept > FEW)], kept);
+    let chunk = ghosts.len().div_ceil(64).max(256);
+    let sums: Vec<[Vec<f64>; 2]> = (0..ghosts.len().div_ceil(chunk))
+        .into_par_iter()
+        .map(|k| cells.sums(ghosts, weighed, k * chunk..((k + 1) * chunk).min(ghosts.len())))
+        .collect();
+    let largest = |kind: usize| {
+        (0..cells.count * cells.count).map(|cell| sums.iter().map(|sums| sums[kind][cell]).sum()).fold(0.0, f64::max)
+    };
+    let additions = PER_ADDITION_DOUBLE * kept as f64;
+    Bounds { single: largest(0).max(PER_WEIGHT), double: STORED + additions + largest(1) }
+}
+
+/// The window in as many parts along each side.
+struct Cells {
+    count: usize,
+    /// What the f64 of one bell is off by, for each unit of it, and of its exponent: the sum of so many ghosts with it.
+    per_double: f64,
+    low: DVec2,
+    side: DVec2,
+}
+
+impl Cells {
+    fn new(frame: Frame, count: usize, ghosts: usize) -> Self {
+        let (low, high) = frame.bounds();
+        let per_double = PER_WEIGHT_DOUBLE + PER_ADDITION_DOUBLE * ghosts as f64;
+        Self { count, per_double, low, side: (high - low) / count as f64 }
+    }
+
+    /// What f32 costs, and f64, in each cell, of a range of ghosts.
+    fn sums(&self, ghosts: &[Ghost], weighed: &Weighed, range: Range<usize>) -> [Vec<f64>; 2] {
+        let mut sums = [(); 2].map(|()| vec![0.0; self.count * self.count]);
+        let mut places = Vec::with_capacity(self.count);
+        for index in range.filter(|&index| weighed.weights[index] > 0.0) {
+            let (ghost, weight) = (&ghosts[index], weighed.weights[index]);
+            let bell = Steepness::new(ghost);
+            places.clear();
+            places.extend((0..self.count).map(|k| bell.places(self, k, weighed.nearest[index].abs())));
+            for (row, [_, y]) in places.iter().enumerate() {
+                for (column, [x, _]) in places.iter().enumerate() {
+                    let [single, double] = bell.off(x, y, self.per_double);
+                    sums[0][row * self.count + column] += weight * single;
+                    sums[1][row * self.count + column] += weight * double;
+                }
+            }
+        }
+        sums
+    }
+}
+
+/// What of a bell decides how much f32 is off.
+struct Steepness<'a> {
+    ghost: &'a Ghost,
+    shape: &'a dyn Shape,
+    /// Whether it depends on the radius alone.
+    radial: bool,
+    /// Whether it is an exponential of the offset, or of a sine, as a Gaussian is, in which a rounding of the exponent counts
+    /// as often as the exponent is large.
+    exponential: bool,
+    /// How far its centre is moved, in sizes.
+    moved: DVec2,
+    /// Whether f32 has room for one over the sizes.
+    held: bool,
+    /// What a sine-Gaussian is shifted by beside its offset, in sizes.
+    beside: DVec2,
+    /// And in f64, the larger of both.
+    beside_double: f64,
+}
+
+/// A bell along one axis, in a cell or farther: offsets in sizes.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    /// The nearest offset, less what f32 shifts it by.
+    near: f64,
+    shift: f64,
+    shift_double: f64,
+    value: f64,
+    steepest: f64,
+    exponent: f64,
+}
+
+impl<'a> Steepness<'a> {
+    fn new(ghost: &'a Ghost) -> Self {
+        let shape = ghost.bell.shape();
+        let moved = |center: f64| (center - f64::from(center as f32)).abs();
+        let beside = match &ghost.bell {
+            Bell::SineGaussian(bell) => SINE / TAU * bell.period / ghost.size,
+            _ => DVec2::ZERO,
+        };
+        Self {
+            ghost,
+            shape,
+            radial: matches!(shape.modes(), Modes::Radial(_)),
+            exponential: matches!(ghost.bell, Bell::Gaussian | Bell::VonMises(_) | Bell::SineGaussian(_)),
+            moved: DVec2::new(moved(ghost.center.x), moved(ghost.center.y)) / ghost.size,
+            held: ghost.size.max_element() < 1.0 / f64::from(f32::MIN_POSITIVE),
+            beside,
+            beside_double: beside.max_element() * f64::EPSILON / f64::from(f32::EPSILON),
+        }
+    }
+
+    /// The bell along both axes in the k-th row and column of cells; no pixel is nearer than `nearest`, in sizes.
+    fn places(&self, cells: &Cells, k: usize, nearest: DVec2) -> [Place; 2] {
+        let low = cells.low + cells.side * k as f64;
+        let high = low + cells.side;
+        let Ghost { center, size, .. } = *self.ghost;
+        let near = ((center.clamp(low, high) - center) / size).abs().max(nearest);
+        let far = ((low - center).abs().max((high - center).abs()) / size).max(near);
+        let position = PER_POSITION * low.abs().max(high.abs()) / size;
+        let [x, y] = [0, 1].map(|axis| {
+            // Of a periodic bell, whose offsets are many, the lobe decides.
+            let lobe = self.lobe(axis, low[axis] - center[axis], high[axis] - center[axis]);
+            // Within half a period a von Mises bell is what a Gaussian is, whose exponent has the offset's rounding already.
+            let relative = match &self.ghost.bell {
+                Bell::Gaussian => true,
+                Bell::VonMises(bell) => far[axis] * size[axis] <= 0.5 * bell.period[axis],
+                _ => false,
+            };
+            let scaled = if relative { 0.0 } else { self.scaled(far[axis]) };
+            let shift = position[axis] + self.moved[axis] + self.beside[axis] + scaled;
+            self.place(lobe.unwrap_or(near[axis]), shift, far[axis])
+        });
+        [x, y]
+    }
+
+    /// How near a periodic bell's lobe is at offsets from `low` to `high`, as the distance at which a Gaussian is as large.
+    fn lobe(&self, axis: usize, low: f64, high: f64) -> Option<f64> {
+        let size = self.ghost.size[axis];
+        let least = |distance: &dyn Fn(f64) -> f64, zeros: &[f64], period: f64| {
+            let (low, high) = (low / period, high / period);
+            let held = |zero: &f64| (low - zero).ceil() <= high - zero;
+            // Between zeros it rises and falls once.
+            if zeros.iter().any(held) { 0.0 } else { distance(low).abs().min(distance(high).abs()) * period / size }
+        };
+        match &self.ghost.bell {
+            Bell::VonMises(bell) => Some(least(&|turns| (PI * turns).sin() / PI, &[0.0], bell.period[axis])),
+            Bell::SineGaussian(bell) => {
+                let zero = bell.mean.clamp(-1.0, 1.0).asin() / TAU;
+                let distance = |turns: f64| ((TAU * turns).sin() - bell.mean) / TAU;
+                Some(least(&distance, &[zero, 0.5 - zero], bell.period[axis]))
+            }
+            _ => None,
+        }
+    }
+
+    /// What the offset's own rounding shifts the bell by, where that goes as far as `far`.
+    fn scaled(&self, far: f64) -> f64 {
+        match &self.ghost.bell {
+            Bell::VonMises(_) | Bell::SineGaussian(_) => PER_OFFSET * far,
+            Bell::Profile(_) => (PER_OFFSET + PER_RADIUS) * far.min(self.shape.ends()),
+            _ => PER_OFFSET * far.min(self.shape.ends()),
+        }
+    }
+
+    /// The bell at an offset or farther that f32 shifts by as much; none goes beyond `far`.
+    fn place(&self, near: f64, shift: f64, far: f64) -> Place {
+        let shape = if self.exponential { Bell::Gaussian.shape() } else { self.shape };
+        let distance = (near - shift).max(0.0);
+        Place {
+            near: distance,
+            shift,
+            // The reference takes whole periods off its own way.
+            shift_double: if self.shape.period().is_some() {
+                4.0 * f64::EPSILON * far + self.beside_double
+            } else {
+                0.0
+            },
+            value: along(shape, distance),
+            steepest: if self.radial { 0.0 } else { shape.steepest(distance) },
+            exponent: if self.exponential { 0.5 * near * near } else { 0.0 },
+        }
+    }
+
+    /// What the bell of peak 1 is off by at most, in f32 and in f64.
+    fn off(&self, x: &Place, y: &Place, per_double: f64) -> [f64; 2] {
+        let met = x.value * y.value;
+        if met == 0.0 {
+            return [0.0; 2];
+        }
+        // A profile may fall from 1 to −1.
+        let most = if self.radial { 2.0 } else { 1.0 } * met;
+        let slope = |x_shift: f64, y_shift: f64| x_shift * x.steepest * y.value + y_shift * y.steepest * x.value;
+        let shifted = if !self.held {
+            f64::INFINITY
+        } else if self.radial {
+            // The radius is not below what both offsets make.
+            self.shape.steepest(x.near.hypot(y.near)) * x.shift.hypot(y.shift)
+        } else {
+            slope(x.shift, y.shift)
+        };
+        let with_exponent = met * (1.0 + x.exponent + y.exponent);
+        [
+            PER_WEIGHT * with_exponent + shifted.min(most),
+            per_double * with_exponent + slope(x.shift_double, y.shift_double).min(most),
+        ]
+    }
+}

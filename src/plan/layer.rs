@@ -1,0 +1,86 @@
+//! What a plan's field is the sum of.
+
+use std::sync::Arc;
+
+use glam::DVec2;
+
+use super::{Evaluator, Group, Lattice, Modes, Transform};
+
+/// A part of the field, with the way that it is computed.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Layer {
+    /// A Fourier series of the ghosts.
+    Series(Series),
+    /// The ghosts' bells themselves, summed at every pixel; groups of [`Transform::Direct`].
+    Direct(Vec<Group>),
+}
+
+impl Layer {
+    /// A layer of ghosts that are summed at every pixel.
+    pub fn direct(groups: impl IntoIterator<Item = Group>) -> Self {
+        Self::Direct(groups.into_iter().map(|group| Group { transform: Transform::Direct, ..group }).collect())
+    }
+
+    /// Its ghosts.
+    pub fn groups(&self) -> &[Group] {
+        match self {
+            Self::Series(series) => &series.groups,
+            Self::Direct(groups) => groups,
+        }
+    }
+
+    /// How it is computed.
+    pub fn evaluator(&self) -> Evaluator {
+        match self {
+            Self::Series(series) => series.evaluator,
+            Self::Direct(_) => Evaluator::Direct,
+        }
+    }
+}
+
+/// A Fourier series: its period, its kept modes, and how it is evaluated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// [`Evaluator::Series`], [`Evaluator::Rows`] or [`Evaluator::Grid`].
+    pub evaluator: Evaluator,
+    /// The period in x and y, in half picture heights.
+    pub period: DVec2,
+    /// How many harmonics of y are kept beside harmonic n of x; never growing, one at least.
+    pub counts: Arc<[u32]>,
+    /// The groups of ghosts, one part of the spectrum each.
+    pub groups: Vec<Group>,
+    /// The modes of all groups, where the plan has computed them: they become the spectrum, and no group has to be
+    /// transformed again.
+    pub modes: Option<Modes>,
+    /// The lattice, where the evaluator is `grid`.
+    pub lattice: Option<Lattice>,
+}
+
+impl Series {
+    /// Highest harmonic in x and y.
+    pub fn degree(&self) -> [u32; 2] {
+        [self.counts.len() as u32 - 1, self.counts[0] - 1]
+    }
+
+    /// How many modes are kept.
+    pub fn terms(&self) -> usize {
+        self.counts.iter().map(|&count| count as usize).sum()
+    }
+}
+
+/// A layer as reports tell of it.
+#[derive(serde::Serialize)]
+pub(super) struct Told {
+    evaluator: Evaluator,
+    ghosts: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    terms: Option<usize>,
+}
+
+impl From<&Layer> for Told {
+    fn from(layer: &Layer) -> Self {
+        let ghosts = layer.groups().iter().map(|group| group.ghosts).sum();
+        let terms = if let Layer::Series(series) = layer { Some(series.terms()) } else { None };
+        Self { evaluator: layer.evaluator(), ghosts, terms }
+    }
+}

@@ -1,0 +1,325 @@
+//! The field of a plan on the device: its spectrum, its evaluators, its range and its values at pixels.
+
+use std::rc::Rc;
+
+use super::{convert, tiles};
+use crate::frame::{Frame, Window};
+use crate::gpu::evaluators::Evaluators;
+use crate::gpu::field::{FieldPass, Source};
+use crate::gpu::range::RangePass;
+use crate::gpu::runner::Runner;
+use crate::gpu::spectrum::{Coefficients, Ghosts, Spectrum, SpectrumGroup};
+use crate::gpu::{Device, PassTime};
+use crate::plan::{Evaluator, Plan, Precision, Series, Transform};
+use crate::{Error, Result};
+
+/// Holds a plan's scene on the device, and evaluates its field: all that certificates and measurements need.
+pub struct Field {
+    pub(super) runner: Runner,
+    spectrum: Spectrum,
+    evaluators: Evaluators,
+    pub(super) values: FieldPass,
+    pub(super) range: RangePass,
+    scene: Option<Plan>,
+    /// The frame whose values are held, if any.
+    held: Option<Frame>,
+    /// The values whose range is on the device, by what tells them from any others.
+    ranged: Option<u64>,
+    tile_pixels: usize,
+}
+
+impl Field {
+    /// A field without a scene.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the driver refuses an object.
+    pub fn new(device: &Rc<Device>) -> Result<Self> {
+        let runner = Runner::new(device)?;
+        Ok(Self {
+            spectrum: Spectrum::new(&runner)?,
+            evaluators: Evaluators::new(&runner)?,
+            values: FieldPass::new(&runner)?,
+            range: RangePass::new(&runner)?,
+            scene: None,
+            held: None,
+            ranged: None,
+            tile_pixels: tiles::PIXELS,
+            runner,
+        })
+    }
+
+    /// Computes the spectrum of the ghosts that the plan keeps, unless it is there already.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the driver refuses.
+    pub fn set_scene(&mut self, plan: &Plan) -> Result<()> {
+        if self.scene.as_ref().is_some_and(|old| old == plan) {
+            return Ok(());
+        }
+        self.forget_scene();
+        if plan.series().is_none() || plan.summed() > 0 {
+            self.upload_summed(plan)?;
+        }
+        if let Some(series) = plan.series() {
+            self.compute_spectrum(plan, series)?;
+        }
+        self.runner.device().check("computing the spectrum")?;
+        self.scene = Some(plan.clone());
+        Ok(())
+    }
+
+    /// Uploads the ghosts that are summed directly, in the floats that the plan asks for.
+    fn upload_summed(&mut self, plan: &Plan) -> Result<()> {
+        if plan.precision == Precision::Double {
+            let (direct, shapes) = convert::direct_ghosts(plan, convert::double_ghost);
+            return self.evaluators.set_ghosts(&self.runner, &direct, &shapes);
+        }
+        let (direct, shapes) = convert::direct_ghosts(plan, convert::single_ghost);
+        let single: Vec<[f32; 4]> = shapes.iter().map(|row| row.map(|x| x as f32)).collect();
+        self.evaluators.set_ghosts(&self.runner, &direct, &single)
+    }
+
+    fn compute_spectrum(&mut self, plan: &Plan, series: &Series) -> Result<()> {
+        if let Some(modes) = &series.modes {
+            let terms = self.runner.run("modes", || convert::terms(series, modes));
+            return self.spectrum.upload(&series.counts, &terms);
+        }
+        let parts = &series.groups;
+        let (mut spectral, mut sums) = (Vec::new(), Vec::new());
+        for group in parts {
+            let (each, summed) = match &group.transform {
+                Transform::Gather(cells) => {
+                    (Vec::new(), self.runner.run("moments", || convert::gathered(plan, series.period, group, cells)))
+                }
+                _ => (convert::spectral_ghosts(plan, series.period, &group.members), Vec::new()),
+            };
+            spectral.push(each);
+            sums.push(summed);
+        }
+        let tables: Vec<_> = parts.iter().map(|group| convert::table(series, group)).collect();
+        let groups = parts.iter().enumerate().map(|(k, group)| SpectrumGroup {
+            coefficients: match &tables[k] {
+                Some(table) => Coefficients::Table(table),
+                None => Coefficients::Factors(group.bell.shape().shader()),
+            },
+            ghosts: match group.transform {
+                Transform::Gather(_) => Ghosts::Sums(&sums[k]),
+                _ => Ghosts::Each(&spectral[k]),
+            },
+            degree: group.degree,
+        });
+        self.spectrum.compute(&self.runner, &series.counts, &groups.collect::<Vec<_>>())
+    }
+
+    /// Computes the spectrum of ghosts whose bell is a table, whatever bells they name: for each mode that the plan
+    /// keeps, harmonic by harmonic of x, what stands before c_n c_m, s_n s_m, c_n s_m and s_n c_m in the bell's series
+    /// about its own centre, the mode's weight 1, 2 or 4 included.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the driver refuses.
+    pub(crate) fn set_tabulated(&mut self, plan: &Plan, table: &[[f32; 4]]) -> Result<()> {
+        self.forget_scene();
+        let everyone: Vec<u32> = (0..plan.problem().ghosts().len() as u32).collect();
+        let group = SpectrumGroup {
+            coefficients: Coefficients::Table(table),
+            ghosts: Ghosts::Each(&convert::spectral_ghosts(plan, plan.period(), &everyone)),
+            degree: plan.degree(),
+        };
+        self.spectrum.compute(&self.runner, plan.counts(), &[group])?;
+        self.runner.device().check("computing the spectrum")?;
+        self.scene = Some(plan.clone());
+        Ok(())
+    }
+
+    /// Rounds the spectrum as a store of 16-bit floats would, whose scale is its largest term: what such a store would
+    /// cost in accuracy. The next [`Field::set_scene`] of the same plan keeps it; [`Field::forget_scene`] does not.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the driver refuses.
+    pub(crate) fn round_spectrum(&mut self) -> Result<()> {
+        self.spectrum.round_to_half()
+    }
+
+    /// Waits until the device has done all that it was asked to.
+    pub fn finish(&self) {
+        self.runner.device().finish();
+    }
+
+    /// Forgets the scene, so that the next [`Field::set_scene`] computes its spectrum anew.
+    pub fn forget_scene(&mut self) {
+        (self.held, self.scene) = (None, None);
+    }
+
+    /// The smallest and the largest value of the field over the frame's window, all colours alike, by the reduction
+    /// that [`Normalize::Minmax`](crate::choices::Normalize::Minmax) uses.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the driver refuses, or where there is no scene.
+    pub fn range(&mut self, frame: Frame) -> Result<[f32; 2]> {
+        self.reduce(frame)?;
+        Ok(self.range.read())
+    }
+
+    /// The field, neither normalised nor multiplied by any strength, at pixels of the frame's window, given as columns
+    /// and rows of the picture.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the driver refuses, or where there is no scene.
+    pub fn probe(&mut self, frame: Frame, pixels: &[[i32; 2]]) -> Result<Vec<[f64; 3]>> {
+        let scale = self.plan()?.scale;
+        let mut values = vec![[0.0; 3]; pixels.len()];
+        for tile in self.tiles(frame.window) {
+            let inside = |&[i, j]: &[i32; 2]| {
+                (0..tile.width as i32).contains(&(i - tile.x)) && (0..tile.height as i32).contains(&(j - tile.y))
+            };
+            let mine: Vec<usize> = (0..pixels.len()).filter(|&index| inside(&pixels[index])).collect();
+            if mine.is_empty() {
+                continue;
+            }
+            let source = self.evaluate(frame, tile)?;
+            // The values come in a texture of one row.
+            for mine in mine.chunks(self.runner.device().info().limits.texture_size as usize) {
+                let local: Vec<_> = mine.iter().map(|&k| [pixels[k][0] - tile.x, pixels[k][1] - tile.y]).collect();
+                for (&index, value) in mine.iter().zip(self.values.probe(&self.runner, source, &local)?) {
+                    values[index] = [0, 1, 2].map(|colour| f64::from(value[colour]) * scale[colour]);
+                }
+            }
+            self.runner.device().check("looking up the field")?;
+        }
+        Ok(values)
+    }
+
+    /// The field, neither normalised nor multiplied by any strength, at every pixel of the frame's window: `visit` gets
+    /// tile after tile, each with its values row by row from the top.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the driver refuses, or where there is no scene.
+    pub fn visit(&mut self, frame: Frame, mut visit: impl FnMut(Window, &[[f64; 3]])) -> Result<()> {
+        let scale = self.plan()?.scale;
+        self.held = None;
+        for tile in self.tiles(frame.window) {
+            let source = self.evaluate(frame, tile)?;
+            let mut pixels = vec![[0.0f32; 4]; tile.pixels()];
+            let field = self.values.draw(&self.runner, source, tile.width, tile.height)?;
+            field.read(&mut pixels, tile.width as usize, tile.width, tile.height);
+            self.runner.device().check("reading the field")?;
+            let value = |pixel: &[f32; 4]| [0, 1, 2].map(|colour| f64::from(pixel[colour]) * scale[colour]);
+            visit(tile, &pixels.iter().map(value).collect::<Vec<_>>());
+        }
+        Ok(())
+    }
+
+    /// Whether each pass is timed from now on; that makes the passes wait for each other.
+    pub fn set_timing(&mut self, timing: bool) {
+        self.runner.set_timing(timing);
+    }
+
+    /// The times gathered since they were last taken.
+    pub fn take_times(&mut self) -> Vec<PassTime> {
+        self.runner.take_times()
+    }
+
+    /// The largest tile, in pixels.
+    pub fn set_tile_pixels(&mut self, pixels: usize) {
+        self.tile_pixels = pixels.max(1);
+    }
+
+    pub(super) fn plan(&self) -> Result<&Plan> {
+        self.scene.as_ref().ok_or_else(|| Error::Gl("the renderer has no scene".into()))
+    }
+
+    pub(super) fn tiles(&self, window: Window) -> Vec<Window> {
+        let limits = &self.runner.device().info().limits;
+        let side = limits.texture_size.min(limits.viewport[0]).min(limits.viewport[1]);
+        // Drivers reset themselves when one draw takes seconds, and `direct` can make that of a tile of any size.
+        let bells = self.scene.as_ref().map_or(0, Plan::summed).max(1);
+        tiles::split(window, side, self.tile_pixels.min((tiles::BELLS / bells).max(1)))
+    }
+
+    /// Evaluates all of a frame once and holds it: until the scene changes, pictures of this frame look it up, and a change
+    /// of settings costs no evaluation.
+    ///
+    /// # Errors
+    /// [`crate::Error::Gl`] where the driver refuses, or where there is no scene.
+    pub fn hold(&mut self, frame: Frame) -> Result<()> {
+        if self.held != Some(frame) {
+            let source = self.evaluate(frame, frame.window)?;
+            let bands = self.tiles(frame.window).len() as u32;
+            self.values.draw_in_bands(&self.runner, source, [frame.window.width, frame.window.height], bands)?;
+            self.held = Some(frame);
+        }
+        Ok(())
+    }
+
+    /// Readies the field of a whole frame: the one that is held, or the evaluator.
+    pub(super) fn whole(&mut self, frame: Frame) -> Result<Source> {
+        if self.held != Some(frame) {
+            return self.evaluate(frame, frame.window);
+        }
+        self.values.bind();
+        Ok(Source::HELD)
+    }
+
+    /// Finds the field's range over the frame's window, and leaves it on the device.
+    pub(super) fn reduce(&mut self, frame: Frame) -> Result<()> {
+        let scale = self.plan()?.scale.map(|scale| scale as f32);
+        if let (true, Some((field, stamp))) = (self.held == Some(frame), self.values.drawn()) {
+            if self.ranged != Some(stamp) {
+                self.range.reset();
+                self.range.add(&self.runner, field, scale)?;
+                self.ranged = Some(stamp);
+            }
+            return Ok(());
+        }
+        self.range.reset();
+        (self.held, self.ranged) = (None, None);
+        for tile in self.tiles(frame.window) {
+            let source = self.evaluate(frame, tile)?;
+            let field = self.values.draw(&self.runner, source, tile.width, tile.height)?;
+            self.range.add(&self.runner, field, scale)?;
+        }
+        Ok(())
+    }
+
+    /// Readies the plan's evaluator for a tile.
+    pub(super) fn evaluate(&mut self, frame: Frame, tile: Window) -> Result<Source> {
+        let Some(plan) = &self.scene else { return Err(Error::Gl("the renderer has no scene".into())) };
+        let (runner, spectrum, evaluators) = (&self.runner, &self.spectrum, &mut self.evaluators);
+        if plan.series().is_none() || plan.summed() > 0 {
+            evaluators.direct([tile.x, tile.y], frame)?;
+        }
+        if let Some(series) = plan.series() {
+            let columns = || tiles::phases(tile.width, |i| frame.x(f64::from(tile.x) + i), series.period.x);
+            let rows = || tiles::phases(tile.height, |j| frame.y(f64::from(tile.y) + j), series.period.y);
+            match (series.evaluator, &series.lattice) {
+                (Evaluator::Direct, _) => {}
+                (Evaluator::Series, _) => evaluators.series(runner, [&columns(), &rows()], spectrum)?,
+                (Evaluator::Rows, _) => evaluators.rows(runner, [&columns(), &rows()], spectrum)?,
+                (Evaluator::Grid, Some(lattice)) => {
+                    let nodes = tiles::Nodes::new(lattice, series.period, frame, tile);
+                    evaluators.grid(runner, &nodes.tile(), spectrum)?;
+                }
+                (Evaluator::Grid, None) => return Err(Error::Plan("a grid without a lattice".into())),
+            }
+        }
+        Ok(convert::source(plan, evaluators.many()))
+    }
+
+    /// The spectrum: for each mode that the plan keeps, harmonic by harmonic of x, A, B, C and D of red, green and blue.
+    /// Of a plan without a series it means nothing.
+    pub(crate) fn spectrum_terms(&self) -> Vec<[f32; 4]> {
+        self.spectrum.read()
+    }
+
+    /// The constant term of the field's series, RGB: its mean over a period. None where the plan has no series.
+    pub fn constant_term(&self) -> Option<[f64; 3]> {
+        let plan = self.scene.as_ref().filter(|plan| plan.series().is_some())?;
+        let terms = self.spectrum.read();
+        Some([0, 1, 2].map(|colour| f64::from(terms[colour][0]) * plan.scale[colour]))
+    }
+
+    /// The device that it renders on.
+    pub fn device(&self) -> &Rc<Device> {
+        self.runner.device()
+    }
+}
