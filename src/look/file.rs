@@ -52,30 +52,32 @@ impl Look {
     /// The scene file that describes the look, with every value spelt out. The lens of a file becomes a table of the
     /// scene's own.
     pub fn to_scene(&self) -> SceneFile {
-        let (preset, lens_ghosts) = match &self.lens {
+        let Self { description, lens, axis, size, tint, lights, ghosts, find, strength, mix, normalize, accuracy } =
+            self;
+        let (preset, lens_ghosts) = match lens {
             LookLens::Preset(lens) => (Some(lens.name.clone()), Vec::new()),
             LookLens::File(_, lens) => (None, lens.ghosts.clone()),
             LookLens::Own(ghosts) => (None, ghosts.clone()),
         };
-        let lights = match &self.lights {
+        let listed = match lights {
             LookLights::Found => None,
             LookLights::Listed(lights) | LookLights::FoundAnd(lights) => Some(lights.clone()),
         };
-        let add = matches!(self.lights, LookLights::FoundAnd(_));
-        let Accuracy { goal, allow_floor, degree, period, evaluator } = self.accuracy;
-        let FindOptions { threshold, merge, max_lights, firefly_limit } = self.find;
+        let add = matches!(lights, LookLights::FoundAnd(_));
+        let Accuracy { goal, allow_floor, degree, period, evaluator } = *accuracy;
+        let FindOptions { threshold, merge, max_lights, firefly_limit } = *find;
         SceneFile {
-            description: self.description.clone(),
+            description: description.clone(),
             preset,
-            axis: Some(self.axis),
+            axis: Some(*axis),
             period,
             degree,
             look: LookSection {
-                strength: Some(self.strength),
-                size: Some(self.size),
-                tint: Some(self.tint),
-                mix: Some(self.mix),
-                normalize: Some(self.normalize),
+                strength: Some(*strength),
+                size: Some(*size),
+                tint: Some(*tint),
+                mix: Some(*mix),
+                normalize: Some(*normalize),
             },
             find: FindSection {
                 threshold,
@@ -85,8 +87,8 @@ impl Look {
                 add,
             },
             accuracy: AccuracySection { goal: Some(goal), allow_floor, evaluator },
-            lights,
-            ghosts: self.ghosts.clone(),
+            lights: listed,
+            ghosts: ghosts.clone(),
             lens_ghosts,
         }
     }

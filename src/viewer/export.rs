@@ -136,3 +136,36 @@ fn computer() -> Result<Computer> {
     let known = Known::of(device.info());
     Ok(Computer::new(device, known))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::look::LookLens;
+    use crate::scene::FindOptions;
+
+    /// A grey photo with a lamp.
+    fn photo() -> Photo {
+        let mut pixels = vec![[0.25, 0.25, 0.25, 1.0]; 32 * 16];
+        pixels[100..103].fill([50.0, 50.0, 50.0, 1.0]);
+        Photo::new(32, 16, pixels)
+    }
+
+    #[test]
+    fn a_job_starts_from_what_the_window_has_found() {
+        let look = Look { lens: LookLens::preset("zoom").unwrap(), ..Look::default() };
+        let document = Document::new(Path::new("a.exr"), photo(), look.clone());
+        // A search would give the lamp another flux than this.
+        let mut known = document.found.clone();
+        known.lights[0].flux = [7.0; 3];
+        let lights = |options: FindOptions| {
+            let search = Search { options, found: known.clone() };
+            Found::knowing(&look, document.photo.clone(), Some(search), Stages::default()).unwrap().scene.lights
+        };
+        assert_eq!(lights(document.searched), known.lights, "it is not searched again");
+        let other = FindOptions { merge: 0.5, ..document.searched };
+        assert_eq!(lights(other), document.found.lights, "by other rules it is");
+        // Nor is a photo copied until its picture is drawn.
+        let found = Found::new(&look, document.photo.clone(), Stages::default()).unwrap();
+        assert!(Arc::ptr_eq(&found.photo, &document.photo));
+    }
+}

@@ -19,24 +19,29 @@ pub enum Work {
 
 /// What has to be done again for the picture of `new`, where that of `old` is there.
 pub fn work(old: &Look, new: &Look) -> Work {
+    // All fields by name: one that is added does not compile until it has a step.
+    let Look { description: _, lens, axis, size, tint, lights, ghosts, find, strength, mix, normalize, accuracy } = new;
     // A search that found lights for `old` is the same for `new`, unless it goes by other rules.
-    if new.searches() && !(old.searches() && old.find == new.find) {
+    if new.searches() && !(old.searches() && old.find == *find) {
         return Work::Lights;
     }
-    match (&old.lights, &new.lights) {
+    match (&old.lights, lights) {
         (LookLights::Listed(_), LookLights::Found | LookLights::FoundAnd(_)) => return Work::Lights,
         (old, new) if old != new => return Work::Ghosts,
         _ => {}
     }
-    let makes = |look: &Look| (look.axis, look.size, look.tint);
-    if old.lens.ghosts() != new.lens.ghosts() || makes(old) != makes(new) || old.ghosts != new.ghosts {
+    let makes = (old.axis, old.size, old.tint) == (*axis, *size, *tint);
+    if old.lens.ghosts() != lens.ghosts() || !makes || old.ghosts != *ghosts {
         return Work::Ghosts;
     }
-    if old.accuracy != new.accuracy {
+    if old.accuracy != *accuracy {
         return Work::Plan;
     }
-    let lays = |look: &Look| (look.strength, look.mix, look.normalize);
-    if lays(old) == lays(new) { Work::Nothing } else { Work::Composite }
+    if (old.strength, old.mix, old.normalize) == (*strength, *mix, *normalize) {
+        Work::Nothing
+    } else {
+        Work::Composite
+    }
 }
 
 #[cfg(test)]
