@@ -100,7 +100,7 @@ mod tests {
     fn size_keeps_the_flux_of_every_bell_and_tint_scales_it() {
         for bell in Bell::examples() {
             let ghost = Ghost { bell, center: DVec2::ONE, size: DVec2::new(0.3, 0.2), radiance: [1.0, -2.0, 3.0] };
-            let look = Look { size: 1.7, tint: [0.5, 1.0, 2.0], ghosts: vec![ghost.clone()], ..Look::default() };
+            let look = Look { size: 1.7, tint: [0.5, 1.0, 2.0], ghosts: vec![ghost.clone()].into(), ..Look::default() };
             let ghosts = look.ghosts(&[]);
             assert_eq!((ghosts.len(), ghosts[0].size), (1, 1.7 * ghost.size));
             let expected = [0.5, 1.0, 2.0].iter().zip(ghost.flux()).map(|(tint, flux)| tint * flux);
@@ -115,7 +115,8 @@ mod tests {
         let light = Light { position: DVec2::new(0.5, 0.25), flux: [1.0; 3], size: 0.0, muted: false };
         let (bell, size) = (Bell::Gaussian, DVec2::ONE);
         let mirror = LensGhost { bell, along: -1.0, size, tint: [1.0; 3], share: 1.0 };
-        let mut look = Look { lens: LookLens::Own(vec![mirror]), axis: DVec2::new(0.25, -0.25), ..Look::default() };
+        let mut look =
+            Look { lens: LookLens::Own(vec![mirror].into()), axis: DVec2::new(0.25, -0.25), ..Look::default() };
         let muted = Light { muted: true, ..light };
         assert_eq!(look.ghosts(&[muted, light]).len(), 1);
         assert_eq!(look.ghosts(&[light])[0].center, DVec2::new(0.0, -0.75));

@@ -131,8 +131,8 @@ mod tests {
 
     #[test]
     fn what_options_cannot_say_needs_a_file() {
-        let own = Look { lens: LookLens::Own(presets::named("zoom").unwrap().ghosts), ..Look::default() };
-        let listed = Look { lights: LookLights::Listed(Vec::new()), ..Look::default() };
+        let own = Look { lens: LookLens::Own(presets::named("zoom").unwrap().ghosts.into()), ..Look::default() };
+        let listed = Look { lights: LookLights::Listed(Vec::new().into()), ..Look::default() };
         for look in [own, listed] {
             let (photo, output) = (Path::new("a.exr"), Path::new("b.exr"));
             assert!(matches!(command_line(&look, photo, output, None), Err(Error::Usage(_))));
