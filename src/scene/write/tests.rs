@@ -209,7 +209,8 @@ fn a_scene_goes_through_a_link_and_keeps_the_permissions() {
     std::fs::write(path("look.toml"), "").unwrap();
     std::fs::set_permissions(path("look.toml"), std::fs::Permissions::from_mode(0o640)).unwrap();
     symlink("look.toml", path("link.toml")).unwrap();
-    write_scene(&path("link.toml"), &SceneFile::default(), true).unwrap();
+    let scene = SceneFile { description: "a veil".into(), ..SceneFile::default() };
+    write_scene(&path("link.toml"), &scene, true).unwrap();
     assert!(path("link.toml").is_symlink(), "the link stays a link");
     let kept = std::fs::metadata(path("look.toml")).unwrap();
     assert!(kept.len() > 0 && kept.permissions().mode() & 0o777 == 0o640, "{kept:?}");
