@@ -13,6 +13,7 @@ use crate::scene::Goal;
 
 /// A plan, and what it rests on.
 pub struct Planning {
+    /// The plan.
     pub plan: Plan,
     /// The cost model that decided.
     pub model: CostModel,

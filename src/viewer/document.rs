@@ -37,6 +37,7 @@ pub struct Document {
     pub gamut: Option<DMat3>,
     /// What was found in it, and by which rules.
     pub found: Found,
+    /// The rules that it was found by.
     pub searched: FindOptions,
     /// What is set; a change becomes a step of the history by [`Document::record`].
     pub look: Look,

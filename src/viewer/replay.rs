@@ -63,14 +63,24 @@ pub enum Step {
     /// Releases it.
     Release,
     /// Presses at one place, moves to the other in as many frames, and releases.
-    Drag { from: Place, to: Place, frames: usize },
+    Drag {
+        /// Where it is pressed.
+        from: Place,
+        /// Where it is released.
+        to: Place,
+        /// In how many frames it gets there.
+        frames: usize,
+    },
     /// Turns the wheel, in points.
     Wheel(f32),
     /// Presses and releases a key by egui's name for it.
     Key {
+        /// egui's name for the key, like `B` or `ArrowLeft`.
         key: String,
+        /// With the control key held.
         #[serde(default)]
         ctrl: bool,
+        /// With the shift key held.
         #[serde(default)]
         shift: bool,
     },

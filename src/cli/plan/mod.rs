@@ -195,6 +195,7 @@ pub struct CostModelReport<'a> {
 }
 
 impl<'a> CostModelReport<'a> {
+    /// That of a plan.
     pub fn new(planned: &'a Planning) -> Self {
         let file = planned.calibration.as_deref();
         let source = if file.is_some() { "calibrated" } else { "built-in" };
