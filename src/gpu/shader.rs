@@ -1,8 +1,8 @@
 //! Shaders: read from `shaders/`, put together, compiled.
 //!
 //! A source is a file of that folder. `#include "path"` pulls in another, once; each file keeps its own line numbers,
-//! and the driver's messages name the file. Every shader begins with the version, the binding numbers of
-//! [`super::layout`] and the caller's own definitions.
+//! and the driver's messages name the file. Every shader begins with the version, the binding numbers and
+//! the other numbers of [`super::layout`], and the caller's own definitions.
 
 use std::fmt::Write as _;
 use std::rc::Rc;
@@ -10,7 +10,7 @@ use std::rc::Rc;
 use glow::HasContext as _;
 
 use super::context::Device;
-use super::layout::BINDINGS;
+use super::layout::{BINDINGS, NUMBERS};
 use crate::{Error, Result, limits};
 
 /// What a software renderer takes to compile a program, bytes.
@@ -204,7 +204,7 @@ fn assemble(path: &str, defines: &[Define<'_>]) -> Result<(String, Vec<String>)>
 /// What every shader begins with.
 fn head(defines: &[Define<'_>]) -> String {
     let mut text = String::from("#version 430 core\n");
-    for (name, number) in BINDINGS {
+    for (name, number) in BINDINGS.into_iter().chain(NUMBERS) {
         let _ = writeln!(text, "#define {name} {number}");
     }
     for (name, value) in defines {

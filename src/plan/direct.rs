@@ -1,7 +1,7 @@
 //! What floats cost the direct sum: unlike a series, each bell is off by no more than it is itself, or as steep, at the
 //! nearest pixel.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{PI, SQRT_2, TAU};
 use std::ops::Range;
 
 use glam::DVec2;
@@ -158,6 +158,8 @@ struct Place {
     near: f64,
     shift: f64,
     shift_double: f64,
+    /// What the offset's part of the position costs, where it is not in the shift.
+    apart: f64,
     value: f64,
     steepest: f64,
     exponent: f64,
@@ -190,7 +192,8 @@ impl<'a> Steepness<'a> {
         let Ghost { center, size, .. } = *self.ghost;
         let near = ((center.clamp(low, high) - center) / size).abs().max(nearest);
         let far = ((low - center).abs().max((high - center).abs()) / size).max(near);
-        let position = PER_POSITION * low.abs().max(high.abs()) / size;
+        // Beyond its end a bell is nothing, so no pixel farther than that matters.
+        let farthest = low.abs().max(high.abs()).min(center.abs() + self.shape.ends() * size);
         let [x, y] = [0, 1].map(|axis| {
             // Of a periodic bell, whose offsets are many, the lobe decides.
             let lobe = self.lobe(axis, low[axis] - center[axis], high[axis] - center[axis]);
@@ -201,8 +204,12 @@ impl<'a> Steepness<'a> {
                 _ => false,
             };
             let scaled = if relative { 0.0 } else { self.scaled(far[axis]) };
-            let shift = position[axis] + self.moved[axis] + self.beside[axis] + scaled;
-            self.place(lobe.unwrap_or(near[axis]), shift, far[axis])
+            // A small Gaussian is steep near its centre: farther off the pixel's own rounding counts as the offset does.
+            let small =
+                matches!(self.ghost.bell, Bell::Gaussian) && center[axis].abs() + 4.0 * size[axis] < farthest[axis];
+            let position = PER_POSITION * if small { center[axis].abs() } else { farthest[axis] } / size[axis];
+            let shift = position + self.moved[axis] + self.beside[axis] + scaled;
+            self.place(lobe.unwrap_or(near[axis]), shift, far[axis], small)
         });
         [x, y]
     }
@@ -236,11 +243,15 @@ impl<'a> Steepness<'a> {
         }
     }
 
-    /// The bell at an offset or farther that f32 shifts by as much; none goes beyond `far`.
-    fn place(&self, near: f64, shift: f64, far: f64) -> Place {
+    /// The bell at an offset or farther that f32 shifts by as much, and by the offset's own part of the position where that is
+    /// not in it; none goes beyond `far`.
+    fn place(&self, near: f64, shift: f64, far: f64, apart: bool) -> Place {
         let shape = if self.exponential { Bell::Gaussian.shape() } else { self.shape };
         let distance = (near - shift).max(0.0);
+        // d² exp(−d²/2) is largest at √2, or where it begins.
+        let peak = near.max(SQRT_2);
         Place {
+            apart: if apart { PER_POSITION * peak * peak * (-0.5 * peak * peak).exp() } else { 0.0 },
             near: distance,
             shift,
             // The reference takes whole periods off its own way.
@@ -274,7 +285,7 @@ impl<'a> Steepness<'a> {
         };
         let with_exponent = met * (1.0 + x.exponent + y.exponent);
         [
-            PER_WEIGHT * with_exponent + shifted.min(most),
+            PER_WEIGHT * with_exponent + (shifted + x.apart * y.value + y.apart * x.value).min(most),
             per_double * with_exponent + slope(x.shift_double, y.shift_double).min(most),
         ]
     }

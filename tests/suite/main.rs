@@ -16,6 +16,7 @@ mod fourier_bessel;
 mod golden;
 mod graf;
 mod layers;
+mod light;
 mod moments;
 mod numeric;
 mod order;
