@@ -32,7 +32,7 @@ impl<'a> Found<'a> {
     /// Finds what glares in a photo.
     ///
     /// # Errors
-    /// Those of [`settings`].
+    /// Those of [`settings()`].
     pub fn new(look: &'a Look, photo: impl Into<Arc<Photo>>, stages: Stages) -> Result<Self> {
         Self::knowing(look, photo, None, stages)
     }
@@ -40,7 +40,7 @@ impl<'a> Found<'a> {
     /// The same for a photo that may have been searched already: by the rules of this look it is not searched again.
     ///
     /// # Errors
-    /// Those of [`settings`].
+    /// Those of [`settings()`].
     pub fn knowing(
         look: &'a Look,
         photo: impl Into<Arc<Photo>>,
