@@ -72,11 +72,11 @@ impl Field {
     fn upload_summed(&mut self, plan: &Plan) -> Result<()> {
         if plan.precision == Precision::Double {
             let (direct, shapes) = convert::direct_ghosts(plan, convert::double_ghost);
-            return self.evaluators.set_ghosts(&self.runner, &direct, &shapes);
+            return self.evaluators.set_ghosts(&self.runner, &direct, DoubleGhost::NONE, &shapes);
         }
         let (direct, shapes) = convert::direct_ghosts(plan, convert::single_ghost);
         let single: Vec<[f32; 4]> = shapes.iter().map(|row| row.map(|x| x as f32)).collect();
-        self.evaluators.set_ghosts(&self.runner, &direct, &single)
+        self.evaluators.set_ghosts(&self.runner, &direct, DirectGhost::NONE, &single)
     }
 
     fn compute_spectrum(&mut self, plan: &Plan, series: &Series) -> Result<()> {
