@@ -7,7 +7,7 @@
 #include "shared/phase.glsl"
 
 const uint BLOCK = 64u;
-layout(local_size_x = 64) in;
+layout(local_size_x = COEFFICIENT_MODES) in;
 
 layout(std140, binding = BINDING_PASS) uniform Pass {
     uint sample_count; // of one ghost; M
@@ -20,7 +20,7 @@ layout(std140, binding = BINDING_PASS) uniform Pass {
     float pad2;
 };
 layout(std140, binding = BINDING_SAMPLES) uniform Samples {
-    vec4 samples[1024]; // 16 KiB, which every OpenGL has; each ghost begins at a vec4
+    vec4 samples[SAMPLE_VECTORS]; // each ghost begins at a vec4
 };
 layout(std430, binding = BINDING_PARTIALS) writeonly buffer Coefficients {
     vec2 coefficients[]; // (a_n, b_n), ghost after ghost

@@ -1,6 +1,6 @@
 // The coefficients of all ghosts added up, an invocation a mode. Sums nest two deep.
 const uint BLOCK = 64u;
-layout(local_size_x = 64) in;
+layout(local_size_x = COEFFICIENT_MODES) in;
 
 layout(std140, binding = BINDING_PASS) uniform Pass {
     uint ghost_count;

@@ -24,10 +24,9 @@ void main() {
 #else
     vec4 light = texelFetch(photo, pixel, 0);
 #ifdef TAKE_LIGHT
-    float given = emitted(light, luminance.rgb);
-    bool is_light = given >= luminance.w && given > 0.0;
+    bool gives = is_light(emitted(light, luminance.rgb), luminance.w);
     // Of a light, what is below 0 is no light.
-    light.rgb *= is_light ? mix(vec3(1.0), light_gain.rgb, greaterThan(light.rgb, vec3(0.0))) : vec3(1.0);
+    light.rgb *= gives ? mix(vec3(1.0), light_gain.rgb, greaterThan(light.rgb, vec3(0.0))) : vec3(1.0);
 #endif
     picture = vec4(light.rgb + added, light.a);
 #endif

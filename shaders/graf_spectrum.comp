@@ -4,7 +4,7 @@
 #include "shared/bessel.glsl"
 #include "shared/phase.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = GRAF_LANES) in;
 layout(std430, binding = BINDING_GHOSTS) readonly buffer Ghosts {
     uint angles[]; // theta, in 2^-32 of a turn
 };

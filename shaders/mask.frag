@@ -17,9 +17,9 @@ layout(std140, binding = BINDING_PASS) uniform Pass {
 layout(location = 0) out vec4 shown;
 
 // As the search for lights has it: a single pixel that outshines all its neighbours is a firefly and no light.
-bool is_light(ivec2 at) {
+bool is_marked(ivec2 at) {
     float luminance = emitted(texelFetch(photo, at, 0), weights);
-    if (luminance < threshold || luminance <= 0.0) return false;
+    if (!is_light(luminance, threshold)) return false;
     ivec2 end = textureSize(photo, 0);
     if (limit == 0.0 || end == ivec2(1)) return true;
     ivec2 first = max(at - 1, 0), last = min(at + 1, end - 1);
@@ -44,7 +44,7 @@ void main() {
     ivec2 stride = (last - first + most) / most;
     for (int j = first.y; j <= last.y; j += stride.y) {
         for (int i = first.x; i <= last.x; i += stride.x) {
-            if (is_light(ivec2(i, j))) {
+            if (is_marked(ivec2(i, j))) {
                 shown = vec4(mark, 1.0);
                 return;
             }

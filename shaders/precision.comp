@@ -1,7 +1,7 @@
 // The driver's own functions, and vglare's cis, for src/gpu/precision.rs to hold against f64.
 #include "shared/phase.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = PRECISION_GROUP) in;
 layout(std430, binding = BINDING_ARGUMENTS) readonly buffer Arguments {
     uvec4 arguments[]; // x as bits, harmonic n, phase, unused
 };

@@ -1,4 +1,4 @@
-// The spectrum of one group of ghosts: each work group sums a slice of the ghosts into a tile of 8 x 8 modes.
+// The spectrum of one group of ghosts: each work group sums a slice of the ghosts into a tile of TILE x TILE modes.
 //
 //     A += w a_n a_m cos(n w1 x_k) cos(m w2 y_k)   and so on for B, C, D
 //
@@ -10,10 +10,10 @@
 #include "shared/spectrum.glsl"
 #include BELL
 
-const uint TILE = 8u;
+const uint TILE = SPECTRUM_TILE;
 const uint BATCH = 32u;
-const uint MINE = 4u;
-layout(local_size_x = 8, local_size_y = 2) in;
+const uint MINE = SPECTRUM_MINE;
+layout(local_size_x = SPECTRUM_TILE, local_size_y = SPECTRUM_ROWS) in;
 
 struct Ghost {
     uvec2 phase; // centre, in 2^-32 of a period

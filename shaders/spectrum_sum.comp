@@ -2,7 +2,7 @@
 // group's bell is TABULATED, by the bell's own coefficients (docs/math.md, "Any bell").
 #include "shared/spectrum.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = SPECTRUM_TILE, local_size_y = SPECTRUM_TILE) in;
 layout(std430, binding = BINDING_PARTIALS) readonly buffer Partials {
     vec4 partials[];
 };

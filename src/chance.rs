@@ -1,4 +1,4 @@
-//! Places by chance, the same in every run.
+//! Places by chance, the same in every run. The tests' scenes are by the same numbers: they include this file.
 
 /// SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014): 64 bits of state, and
 /// enough quality to place ghosts.
@@ -9,7 +9,8 @@ impl Chance {
         Self(seed)
     }
 
-    fn bits(&mut self) -> u64 {
+    /// 64 of them.
+    pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);

@@ -11,31 +11,62 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 pub enum Error {
     /// A photo could not be read: missing, damaged, or of a kind that vglare does not read.
     #[error("cannot read the photo {}: {reason}", path.display())]
-    ReadPhoto { path: PathBuf, reason: String },
+    ReadPhoto {
+        /// The file or folder.
+        path: PathBuf,
+        /// Why, in words.
+        reason: String,
+    },
 
     /// A picture could not be written. Nothing is left behind under its name.
     #[error("cannot write {}: {reason}", path.display())]
-    Write { path: PathBuf, reason: String },
+    Write {
+        /// The file or folder.
+        path: PathBuf,
+        /// Why, in words.
+        reason: String,
+    },
 
     /// The output exists already and `--force` was not given.
     #[error("{} exists already; --force overwrites it", path.display())]
-    Exists { path: PathBuf },
+    Exists {
+        /// The file or folder.
+        path: PathBuf,
+    },
 
     /// A folder that is to be filled holds something else already, and `--force` was not given.
     #[error("the folder {} holds other files; name another, or --force writes among them", path.display())]
-    Occupied { path: PathBuf },
+    Occupied {
+        /// The file or folder.
+        path: PathBuf,
+    },
 
     /// A scene, light or lens file says something that it must not.
     #[error("{}: {reason}", path.display())]
-    SceneFile { path: PathBuf, reason: String },
+    SceneFile {
+        /// The file or folder.
+        path: PathBuf,
+        /// Why, in words.
+        reason: String,
+    },
 
     /// A script for the window that cannot be read or played.
     #[error("{}: {reason}", path.display())]
-    Script { path: PathBuf, reason: String },
+    Script {
+        /// The file or folder.
+        path: PathBuf,
+        /// Why, in words.
+        reason: String,
+    },
 
     /// No lens preset has this name.
     #[error("no lens preset is called {name:?}; there are {}{}", known.join(", "), meant(name, known))]
-    UnknownPreset { name: String, known: Vec<String> },
+    UnknownPreset {
+        /// The name that was given.
+        name: String,
+        /// The names that there are.
+        known: Vec<String>,
+    },
 
     /// f32 cannot be as exact as asked in this scene.
     #[error(
@@ -43,27 +74,57 @@ pub enum Error {
         below_floor(*asked, *floor),
         above(*floor)
     )]
-    ToleranceBelowFloor { asked: f64, floor: f64 },
+    ToleranceBelowFloor {
+        /// The tolerance, relative to the largest glare.
+        asked: f64,
+        /// The least that can be had, in the same measure.
+        floor: f64,
+    },
 
     /// Even the loosest plan is expected to take longer than it may.
     #[error("a budget of {asked:.3} ms is below what the cheapest plan is expected to cost here: {least:.3} ms")]
-    BudgetTooSmall { asked: f64, least: f64 },
+    BudgetTooSmall {
+        /// The budget, in milliseconds.
+        asked: f64,
+        /// What the cheapest plan is expected to take, in milliseconds.
+        least: f64,
+    },
 
     /// The rendered field is further from the truth than was asked.
     #[error("the glare is off by {measured:.1e} of its largest value, and {asked:.1e} was asked")]
-    ToleranceMissed { asked: f64, measured: f64 },
+    ToleranceMissed {
+        /// What was asked, relative to the largest glare.
+        asked: f64,
+        /// The largest error that was measured, in the same measure.
+        measured: f64,
+    },
 
     /// What was rendered is not finite where the photo is: too bright for 32-bit floats, or a driver's fault.
     #[error("the glare is infinite or undefined at {pixels} pixels where the photo is not; nothing is written")]
-    NotFinite { pixels: usize },
+    NotFinite {
+        /// How many pixels it is at.
+        pixels: usize,
+    },
 
     /// One photo of several could not be done.
     #[error("{}: {error}", path.display())]
-    Frame { path: PathBuf, error: Box<Error> },
+    Frame {
+        /// The file or folder.
+        path: PathBuf,
+        /// What went wrong with it.
+        error: Box<Error>,
+    },
 
     /// Several photos were done, but not all; each error has been told.
     #[error("{failed} of {frames} photos could not be done")]
-    Frames { failed: usize, frames: usize, first: Box<Error> },
+    Frames {
+        /// How many were not done.
+        failed: usize,
+        /// How many there were.
+        frames: usize,
+        /// The first error.
+        first: Box<Error>,
+    },
 
     /// Of several photos, some have glare that is further from the truth than was asked.
     #[error(
@@ -71,7 +132,18 @@ pub enum Error {
          of its largest value, and {asked:.1e} was asked",
         worst.display()
     )]
-    FramesMissed { missed: usize, frames: usize, worst: PathBuf, measured: f64, asked: f64 },
+    FramesMissed {
+        /// How many missed it.
+        missed: usize,
+        /// How many there were.
+        frames: usize,
+        /// The photo with the largest error.
+        worst: PathBuf,
+        /// The largest error that was measured, in the same measure.
+        measured: f64,
+        /// What was asked, relative to the largest glare.
+        asked: f64,
+    },
 
     /// What was asked of the plan cannot be had.
     #[error("no plan: {0}")]
@@ -79,7 +151,10 @@ pub enum Error {
 
     /// The bench missed a bar, and was asked to hold them all.
     #[error("missed:\n  {}", missed.join("\n  "))]
-    Missed { missed: Vec<String> },
+    Missed {
+        /// Each bar that was missed, in words.
+        missed: Vec<String>,
+    },
 
     /// A chart could not be drawn.
     #[error("the chart cannot be drawn: {0}")]
@@ -87,15 +162,24 @@ pub enum Error {
 
     /// The system's limit of memory leaves too little.
     #[error("not enough memory: {reason}")]
-    Memory { reason: String },
+    Memory {
+        /// Why, in words.
+        reason: String,
+    },
 
     /// The system gives no thread to work on, or too few.
     #[error("too few threads can be started: {reason}")]
-    Threads { reason: String },
+    Threads {
+        /// Why, in words.
+        reason: String,
+    },
 
     /// A mistake in the program itself.
     #[error("an internal error ({what}); please report it")]
-    Internal { what: String },
+    Internal {
+        /// Where, and what it said.
+        what: String,
+    },
 
     /// Someone who watched called it off.
     #[error("cancelled")]
@@ -107,11 +191,17 @@ pub enum Error {
 
     /// No backend gives OpenGL 4.3.
     #[error("no OpenGL 4.3 context could be had\n  {}", reasons.join("\n  "))]
-    NoContext { reasons: Vec<String> },
+    NoContext {
+        /// Why, for each way that was tried.
+        reasons: Vec<String>,
+    },
 
     /// There is nothing to open a window on.
     #[error("no window can be opened: {reason}")]
-    NoDisplay { reason: String },
+    NoDisplay {
+        /// Why, in words.
+        reason: String,
+    },
 
     /// The driver refused something that it should support; a shader that does not compile, for example.
     #[error("OpenGL failed: {0}")]

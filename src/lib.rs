@@ -39,7 +39,6 @@
 //!
 //! The program lists the commands of all three, in `src/program`.
 
-#![warn(clippy::print_stderr, clippy::print_stdout)]
 // What the core has for the rooms on top alone looks unused without them.
 #![cfg_attr(not(all(feature = "cli", feature = "laboratory", feature = "window")), allow(dead_code, unused_imports))]
 

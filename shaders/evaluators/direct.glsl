@@ -13,12 +13,12 @@ layout(std430, binding = BINDING_GHOSTS) readonly buffer Ghosts {
 };
 // A fixed number of rounds, which compilers unroll: Mesa's software renderer ends every loop once a pixel has gone
 // through 65535 rounds in all.
-const uint STEP = 8u;
+const uint STEP = DIRECT_STEP;
 #else
 // As many as fit 64 KiB. All pixels read the same ghost at once, which uniforms are made for: on Mesa's software renderer
 // this is 3 to 5 times as fast as a storage buffer, but only if the loop is not unrolled.
 layout(std140, binding = BINDING_FEW_GHOSTS) uniform Ghosts {
-    Ghost ghosts[2048];
+    Ghost ghosts[DIRECT_FEW_BYTES / 32];
 };
 const uint STEP = 1u;
 #endif
@@ -35,9 +35,9 @@ vec3 glare(ivec2 pixel) {
     vec2 position = vec2(ivec2(2 * p.x + 1 - size.x, size.y - 2 * p.y - 1)) * unit;
     // Batches are summed with what each addition lost (Kahan), so that rounding does not grow with K.
     precise vec3 sum = vec3(0.0), lost = vec3(0.0);
-    for (uint base = 0u; base < ghost_count; base += 64u) {
+    for (uint base = 0u; base < ghost_count; base += DIRECT_BATCH) {
         vec3 batch = vec3(0.0);
-        uint last = min(base + 64u, ghost_count);
+        uint last = min(base + DIRECT_BATCH, ghost_count);
         for (uint first = base; first < last; first += STEP) {
             for (uint k = 0u; k < STEP; ++k) {
                 Ghost ghost = ghosts[first + k];

@@ -15,10 +15,10 @@ struct Ghost {
 layout(std430, binding = BINDING_GHOSTS) readonly buffer Ghosts {
     Ghost ghosts[];
 };
-const uint STEP = 8u;
+const uint STEP = DIRECT_STEP;
 #else
 layout(std140, binding = BINDING_FEW_GHOSTS) uniform Ghosts {
-    Ghost ghosts[1024];
+    Ghost ghosts[DIRECT_FEW_BYTES / 64];
 };
 const uint STEP = 1u;
 #endif
@@ -35,8 +35,8 @@ vec3 glare(ivec2 pixel) {
     precise double x = aspect * double(2 * p.x + 1 - size.x) / double(size.y);
     precise double y = double(size.y - 2 * p.y - 1) / double(size.y);
     double red = 0.0lf, green = 0.0lf, blue = 0.0lf;
-    for (uint base = 0u; base < ghost_count; base += 64u) {
-        uint last = min(base + 64u, ghost_count);
+    for (uint base = 0u; base < ghost_count; base += DIRECT_BATCH) {
+        uint last = min(base + DIRECT_BATCH, ghost_count);
         for (uint first = base; first < last; first += STEP) {
             for (uint k = 0u; k < STEP; ++k) {
                 Ghost ghost = ghosts[first + k];

@@ -8,10 +8,10 @@ use super::resource::Buffer;
 use super::runner::Runner;
 use crate::{Error, Result};
 
-/// Modes of a work group; as in `coefficients.comp`.
-const MODES: u32 = 64;
+/// Modes of a work group.
+pub(super) const MODES: u32 = 64;
 /// vec4s of the uniform block: 16 KiB, the most that every OpenGL 4.3 has.
-const BLOCK: usize = 1024;
+pub(super) const BLOCK: usize = 1024;
 /// Samples of one ghost that the block has room for.
 pub(crate) const MOST_SAMPLES: usize = 4 * BLOCK;
 /// The highest degree: the notes' plug-in has 20, and nothing here needs thousands.

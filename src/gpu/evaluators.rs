@@ -13,10 +13,12 @@ use super::spectrum::Spectrum;
 use crate::frame::Frame;
 use crate::{Error, Result};
 
-/// Where there are many ghosts, `direct` sums this many of them in a round of its loop; as in `evaluators/direct.glsl`.
-const STEP: usize = 8;
-/// What a uniform block must hold for the ghosts that fit one; as in `evaluators/direct.glsl`.
-const FEW_BYTES: u32 = 64 << 10;
+/// Where there are many ghosts, `direct` sums this many of them in a round of its loop.
+pub(super) const STEP: usize = 8;
+/// And this many before what is lost of their sum is made up for.
+pub(super) const BATCH: usize = 64;
+/// What a uniform block must hold for the ghosts that fit one.
+pub(super) const FEW_BYTES: u32 = 64 << 10;
 
 /// What ghosts and parameters of bells are made of, in whichever floats.
 type Words = [u32; 4];
@@ -81,7 +83,7 @@ impl Evaluators {
         let step = if self.many { STEP } else { 1 };
         let mut padded = ghosts.to_vec();
         padded.resize(ghosts.len().next_multiple_of(step), none);
-        let rounds = padded.len() / step + padded.len().div_ceil(64);
+        let rounds = padded.len() / step + padded.len().div_ceil(BATCH);
         within_rounds(runner, rounds, "direct", ghosts.len(), "ghosts")?;
         self.ghost_count = padded.len();
         self.shapes.store(bytemuck::cast_slice(shapes))?;

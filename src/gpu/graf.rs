@@ -11,8 +11,8 @@ use crate::frame::Frame;
 
 /// Ghosts in one dispatch: far below the 65535 rounds after which Mesa's software renderer ends a loop without a word.
 const BATCH: usize = 4096;
-/// Invocations along m in a work group; as in `graf_spectrum.comp`.
-const LANES: u32 = 64;
+/// Invocations along m in a work group.
+pub(super) const LANES: u32 = 64;
 
 /// Where to look into the table of Bessel functions: cell, fraction, and what `graf_spectrum.comp` and
 /// `graf_radial.frag` say of z; w is unused.

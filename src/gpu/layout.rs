@@ -88,6 +88,21 @@ pub(crate) const BINDINGS: [Binding; 29] = [
     PICTURE,
 ];
 
+/// Numbers that passes and their shaders have to agree on, for the head of every shader: work groups, and what is done in
+/// one round of a loop.
+pub(crate) const NUMBERS: [Binding; 10] = [
+    ("DIRECT_STEP", super::evaluators::STEP as u32),
+    ("DIRECT_BATCH", super::evaluators::BATCH as u32),
+    ("DIRECT_FEW_BYTES", super::evaluators::FEW_BYTES),
+    ("SPECTRUM_TILE", super::spectrum::TILE),
+    ("SPECTRUM_MINE", super::spectrum::MINE),
+    ("SPECTRUM_ROWS", super::spectrum::TILE / super::spectrum::MINE),
+    ("COEFFICIENT_MODES", super::coefficients::MODES),
+    ("SAMPLE_VECTORS", super::coefficients::BLOCK as u32),
+    ("GRAF_LANES", super::graf::LANES),
+    ("PRECISION_GROUP", super::precision::GROUP),
+];
+
 /// One ghost as the spectrum's shader reads it.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]

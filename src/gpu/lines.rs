@@ -41,6 +41,7 @@ impl LinesPass {
         let target = Texture::new(device, Texel::Rgba, width, height)?;
         target.clear(1.0);
         let (vertices, uniforms) = (Buffer::new(device, 0)?, Buffer::new(device, 1)?);
+        // SAFETY: the device keeps its context current on this thread.
         let array = unsafe { device.gl().create_vertex_array() }
             .map_err(|reason| Error::Gl(format!("vertex array: {reason}")))?;
         let window = [x[0], y[0], x[1] - x[0], y[1] - y[0]];
@@ -62,8 +63,11 @@ impl LinesPass {
             self.target.target(0);
             program.bind();
             let gl = self.device.gl();
+            // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
             unsafe { gl.bind_vertex_array(Some(self.array)) };
             self.vertices.bind_vertices(0);
+            // SAFETY: the device keeps its context current on this thread, and the array and what it points to are
+            // there.
             unsafe {
                 gl.line_width(width.min(self.widest));
                 gl.draw_arrays(glow::LINE_STRIP, 0, vertices.len() as i32);
@@ -83,6 +87,7 @@ impl LinesPass {
 impl Drop for LinesPass {
     fn drop(&mut self) {
         if let Some(gl) = self.device.to_free() {
+            // SAFETY: the device's context is there and current, and nothing uses what is freed from here on.
             unsafe { gl.delete_vertex_array(self.array) }
         }
     }
@@ -91,6 +96,7 @@ impl Drop for LinesPass {
 /// The widest line: in a forward-compatible context anything above 1 is an error.
 fn widest_line(gl: &glow::Context) -> f32 {
     let mut range = [1.0; 2];
+    // SAFETY: the device keeps its context current on this thread, and numbers are all that it is given.
     unsafe {
         let flags = gl.get_parameter_i32(glow::CONTEXT_FLAGS) as u32;
         if flags & glow::CONTEXT_FLAG_FORWARD_COMPATIBLE_BIT != 0 {

@@ -18,6 +18,9 @@
 //! | `shrink`, `view` | means of the picture, where it is made smaller; the picture as a display shows it |
 //! | `precision` | how exact the driver's sin, cos and exp are, and vglare's phases |
 
+// Calling OpenGL is unsafe; each block says what makes it sound.
+#![allow(unsafe_code)]
+
 pub(crate) mod coefficients;
 pub(crate) mod composite;
 mod context;

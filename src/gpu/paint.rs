@@ -43,6 +43,7 @@ impl Painter {
     ) {
         let gl = self.device.gl();
         screen.target(screen.whole());
+        // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
         unsafe {
             // A pixel buffer that is bound would be taken for the source of the painter's textures.
             gl.bind_buffer(glow::PIXEL_UNPACK_BUFFER, None);
@@ -50,6 +51,7 @@ impl Painter {
             gl.active_texture(glow::TEXTURE0);
         }
         self.painter.paint_and_update_textures(screen.size(), pixels_per_point, shapes, textures);
+        // SAFETY: the device keeps its context current on this thread, and numbers are all that it is given.
         unsafe {
             gl.disable(glow::SCISSOR_TEST);
             gl.disable(glow::BLEND);
@@ -60,6 +62,7 @@ impl Painter {
 
     /// Takes egui's fonts as they are, for a painter that has not seen them made.
     pub fn set_fonts(&mut self, image: egui::ColorImage) {
+        // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
         unsafe {
             self.device.gl().bind_buffer(glow::PIXEL_UNPACK_BUFFER, None);
             self.device.gl().active_texture(glow::TEXTURE0);

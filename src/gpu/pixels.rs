@@ -24,6 +24,7 @@ impl PixelBuffer {
     /// # Errors
     /// [`Error::Gl`] where the driver refuses.
     pub fn new(device: &Rc<Device>) -> Result<Self> {
+        // SAFETY: the device keeps its context current on this thread.
         let raw = unsafe { device.gl().create_buffer() }.map_err(|reason| Error::Gl(format!("buffer: {reason}")))?;
         Ok(Self { device: device.clone(), raw, fence: None })
     }
@@ -46,8 +47,10 @@ impl PixelBuffer {
     /// Lets `work` read what [`PixelBuffer::fill`] left; within it, offset 0 of the bound buffer is the first pixel.
     pub fn unpack(&self, work: impl FnOnce()) {
         let gl = self.device.gl();
+        // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
         unsafe { gl.bind_buffer(glow::PIXEL_UNPACK_BUFFER, Some(self.raw)) };
         work();
+        // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
         unsafe { gl.bind_buffer(glow::PIXEL_UNPACK_BUFFER, None) };
     }
 
@@ -59,6 +62,7 @@ impl PixelBuffer {
         self.renew(glow::PIXEL_PACK_BUFFER, width, height, glow::STREAM_READ)?;
         let gl = self.device.gl();
         work();
+        // SAFETY: the device keeps its context current on this thread.
         let fence = unsafe {
             gl.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
             let fence = gl.fence_sync(glow::SYNC_GPU_COMMANDS_COMPLETE, 0);
@@ -78,6 +82,7 @@ impl PixelBuffer {
     pub fn drain(&mut self, pixels: &mut [[f32; 4]], stride: usize, width: u32, height: u32) -> Result<()> {
         self.wait()?;
         let target = glow::PIXEL_PACK_BUFFER;
+        // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
         unsafe { self.device.gl().bind_buffer(target, Some(self.raw)) };
         self.mapped(target, width, height, glow::MAP_READ_BIT, |mapped| {
             for (from, to) in mapped.chunks_exact(width as usize).zip(pixels.chunks_mut(stride)) {
@@ -91,6 +96,7 @@ impl PixelBuffer {
         let bytes = bytes(width, height)?;
         limits::room(bytes as u64, "a tile of pixels")?;
         let gl = self.device.gl();
+        // SAFETY: the device keeps its context current on this thread, and the slice says how long it is.
         unsafe {
             gl.bind_buffer(target, Some(self.raw));
             gl.buffer_data_size(target, bytes, usage);
@@ -109,14 +115,17 @@ impl PixelBuffer {
     ) -> Result<()> {
         let bytes = bytes(width, height)?;
         let gl = self.device.gl();
+        // SAFETY: the device keeps its context current on this thread, and the buffer that is bound has as many bytes.
         let memory = unsafe { gl.map_buffer_range(target, 0, bytes, access) };
         if !memory.is_null() {
-            // GL 4.2 and later align what they map to 64 bytes. Nothing else has the memory until it is unmapped; what is
-            // mapped for reading is not written to by the callers above.
             let pixels = width as usize * height as usize;
+            // SAFETY: the mapped memory holds as many pixels, and GL 4.2 and later align it to 64 bytes. Nothing else has it
+            // until it is unmapped; what is mapped for reading is not written to by the callers above.
             work(unsafe { std::slice::from_raw_parts_mut(memory.cast(), pixels) });
+            // SAFETY: the buffer is bound and mapped, and nobody keeps the memory.
             unsafe { gl.unmap_buffer(target) };
         }
+        // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
         unsafe { gl.bind_buffer(target, None) };
         if memory.is_null() { Err(Error::Gl("the driver gives no memory for pixels".into())) } else { Ok(()) }
     }
@@ -125,6 +134,7 @@ impl PixelBuffer {
         let Some(fence) = self.fence else { return Ok(()) };
         let gl = self.device.gl();
         let done = loop {
+            // SAFETY: the device keeps its context current on this thread, and the fence is not deleted yet.
             match unsafe { gl.client_wait_sync(fence, glow::SYNC_FLUSH_COMMANDS_BIT, PATIENCE) } {
                 glow::TIMEOUT_EXPIRED => {}
                 other => break other != glow::WAIT_FAILED,
@@ -136,6 +146,7 @@ impl PixelBuffer {
 
     fn forget(&mut self) {
         if let (Some(fence), Some(gl)) = (self.fence.take(), self.device.to_free()) {
+            // SAFETY: the device's context is there and current, and nothing uses what is freed from here on.
             unsafe { gl.delete_sync(fence) }
         }
     }
@@ -151,6 +162,7 @@ impl Drop for PixelBuffer {
     fn drop(&mut self) {
         self.forget();
         if let Some(gl) = self.device.to_free() {
+            // SAFETY: the device's context is there and current, and nothing uses what is freed from here on.
             unsafe { gl.delete_buffer(self.raw) }
         }
     }

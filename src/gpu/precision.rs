@@ -14,7 +14,7 @@ pub const RANGES: [f64; 7] = [1.0, 10.0, 100.0, 1e3, 1e4, 1e5, 1e6];
 
 /// Arguments that are tried in each range, and how many of them a work group takes.
 const COUNT: u32 = 1 << 14;
-const GROUP: u32 = 64;
+pub(super) const GROUP: u32 = 64;
 
 /// The worst errors over arguments of up to some size, against f64; infinite where a value was not finite.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]

@@ -30,7 +30,9 @@ impl<T: Pod> Buffer<T> {
         let bytes = i32::try_from(length.max(1) * size_of::<T>())
             .map_err(|_| Error::Gl(format!("a buffer of {length} elements is beyond 2 GiB")))?;
         limits::room(bytes as u64, "a buffer")?;
+        // SAFETY: the device keeps its context current on this thread.
         let raw = unsafe { gl.create_buffer() }.map_err(refused("buffer"))?;
+        // SAFETY: the device keeps its context current on this thread, and the slice says how long it is.
         unsafe {
             gl.bind_buffer(glow::SHADER_STORAGE_BUFFER, Some(raw));
             gl.buffer_data_size(glow::SHADER_STORAGE_BUFFER, bytes, glow::DYNAMIC_DRAW);
@@ -56,6 +58,7 @@ impl<T: Pod> Buffer<T> {
 
     fn write(&self, data: &[T]) {
         let gl = self.device.gl();
+        // SAFETY: the device keeps its context current on this thread, and the slice says how long it is.
         unsafe {
             gl.bind_buffer(glow::SHADER_STORAGE_BUFFER, Some(self.raw));
             gl.buffer_sub_data_u8_slice(glow::SHADER_STORAGE_BUFFER, 0, bytemuck::cast_slice(data));
@@ -66,6 +69,7 @@ impl<T: Pod> Buffer<T> {
     pub fn read(&self, length: usize) -> Vec<T> {
         let mut data = vec![T::zeroed(); length.min(self.length)];
         let gl = self.device.gl();
+        // SAFETY: the device keeps its context current on this thread, and the buffer holds as much as the slice takes.
         unsafe {
             gl.memory_barrier(glow::BUFFER_UPDATE_BARRIER_BIT);
             gl.bind_buffer(glow::SHADER_STORAGE_BUFFER, Some(self.raw));
@@ -81,12 +85,14 @@ impl<T: Pod> Buffer<T> {
 
     /// Binds the whole buffer as a shader storage block.
     pub fn bind_storage(&self, (_, index): Binding) {
+        // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
         unsafe { self.device.gl().bind_buffer_base(glow::SHADER_STORAGE_BUFFER, index, Some(self.raw)) }
     }
 
     /// Makes the buffer the vertex attribute `location` of the current vertex array: f32s, as many as a `T` holds.
     pub fn bind_vertices(&self, location: u32) {
         let (gl, floats) = (self.device.gl(), size_of::<T>() / size_of::<f32>());
+        // SAFETY: the device keeps its context current on this thread, and the offset is into the buffer that is bound.
         unsafe {
             gl.bind_buffer(glow::ARRAY_BUFFER, Some(self.raw));
             gl.enable_vertex_attrib_array(location);
@@ -96,6 +102,7 @@ impl<T: Pod> Buffer<T> {
 
     /// Binds the whole buffer as a uniform block.
     pub fn bind_uniform(&self, (_, index): Binding) {
+        // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
         unsafe { self.device.gl().bind_buffer_base(glow::UNIFORM_BUFFER, index, Some(self.raw)) }
     }
 }
@@ -103,6 +110,7 @@ impl<T: Pod> Buffer<T> {
 impl<T> Drop for Buffer<T> {
     fn drop(&mut self) {
         if let Some(gl) = self.device.to_free() {
+            // SAFETY: the device's context is there and current, and nothing uses what is freed from here on.
             unsafe { gl.delete_buffer(self.raw) }
         }
     }
@@ -172,10 +180,12 @@ impl Texture {
         let bytes = (16 * u64::from(width) * u64::from(height)).saturating_mul(if levels > 1 { 4 } else { 3 }) / 3;
         limits::room(bytes, "a texture")?;
         let gl = device.gl();
+        // SAFETY: the device keeps its context current on this thread.
         let raw = unsafe { gl.create_texture() }.map_err(refused("texture"))?;
         // Whole before anything can fail, so that an early return frees what there is.
         let mut texture = Self { device: device.clone(), raw, framebuffers: Vec::new(), texel, width, height };
         texture.bind(WORKBENCH);
+        // SAFETY: the device keeps its context current on this thread, and numbers are all that it is given.
         unsafe {
             for (name, value) in [
                 (glow::TEXTURE_MIN_FILTER, glow::NEAREST_MIPMAP_NEAREST),
@@ -188,8 +198,10 @@ impl Texture {
             gl.tex_storage_2d(glow::TEXTURE_2D, levels as i32, texel.internal_format(), width as i32, height as i32);
         }
         for level in 0..levels {
+            // SAFETY: the device keeps its context current on this thread.
             let framebuffer = unsafe { gl.create_framebuffer() }.map_err(refused("framebuffer"))?;
             texture.framebuffers.push(framebuffer);
+            // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
             let status = unsafe {
                 gl.bind_framebuffer(glow::FRAMEBUFFER, Some(framebuffer));
                 let (target, attachment) = (glow::FRAMEBUFFER, glow::COLOR_ATTACHMENT0);
@@ -229,6 +241,7 @@ impl Texture {
     /// Binds the texture to a unit.
     pub fn bind(&self, (_, unit): Binding) {
         let gl = self.device.gl();
+        // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
         unsafe {
             gl.active_texture(glow::TEXTURE0 + unit);
             gl.bind_texture(glow::TEXTURE_2D, Some(self.raw));
@@ -239,6 +252,7 @@ impl Texture {
     pub fn bind_level(&self, binding: Binding, level: u32) {
         self.bind(binding);
         let gl = self.device.gl();
+        // SAFETY: the device keeps its context current on this thread, and numbers are all that it is given.
         unsafe {
             gl.tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_BASE_LEVEL, level as i32);
             gl.tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_MAX_LEVEL, level as i32);
@@ -248,12 +262,14 @@ impl Texture {
     /// Sets every channel of level 0 to one value.
     pub fn clear(&self, value: f32) {
         self.target(0);
+        // SAFETY: the device keeps its context current on this thread, and numbers are all that it is given.
         unsafe { self.device.gl().clear_buffer_f32_slice(glow::COLOR, 0, &[value; 4]) }
     }
 
     /// Makes a level the target of drawing, all of it. Sets all state that drawing depends on.
     pub fn target(&self, level: u32) {
         let gl = self.device.gl();
+        // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
         unsafe {
             gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffers[level as usize]));
             gl.viewport(0, 0, self.level_width(level) as i32, self.level_height(level) as i32);
@@ -268,6 +284,7 @@ impl Texture {
     pub fn write(&self, pixels: &[[f32; 4]], stride: usize, width: u32, height: u32) {
         assert!(pixels.len() >= (height as usize - 1) * stride + width as usize && width as usize <= stride);
         let gl = self.device.gl();
+        // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
         unsafe {
             gl.bind_buffer(glow::PIXEL_UNPACK_BUFFER, None);
             gl.pixel_store_i32(glow::UNPACK_ROW_LENGTH, stride as i32);
@@ -286,6 +303,8 @@ impl Texture {
         let (width, height) = (width as i32, height as i32);
         self.bind(WORKBENCH);
         let (target, format) = (glow::TEXTURE_2D, glow::RGBA);
+        // SAFETY: the device keeps its context current on this thread; the callers give a slice that holds all rows, or
+        // a buffer that does.
         unsafe { self.device.gl().tex_sub_image_2d(target, 0, 0, 0, width, height, format, glow::FLOAT, pixels) }
     }
 
@@ -294,6 +313,7 @@ impl Texture {
         assert_eq!(self.texel, Texel::Rgba);
         assert!(pixels.len() >= (height as usize - 1) * stride + width as usize && width as usize <= stride);
         let gl = self.device.gl();
+        // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
         unsafe {
             gl.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
             gl.pixel_store_i32(glow::PACK_ROW_LENGTH, stride as i32);
@@ -307,6 +327,8 @@ impl Texture {
         assert!(self.texel == Texel::Rgba && x < self.width && y < self.height);
         let mut texel = [[0.0f32; 4]];
         let gl = self.device.gl();
+        // SAFETY: the device keeps its context current on this thread, no buffer is bound to read into, and the slice
+        // holds the one texel.
         unsafe {
             gl.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
             gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffers[0]));
@@ -329,6 +351,7 @@ impl Texture {
     pub fn read_level(&self, level: u32) -> Vec<f32> {
         let (width, height) = (self.level_width(level), self.level_height(level));
         let mut values = vec![0.0; width as usize * height as usize * self.texel.channels()];
+        // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
         unsafe { self.device.gl().bind_buffer(glow::PIXEL_PACK_BUFFER, None) };
         self.read_raw(level, PixelPackData::Slice(Some(bytemuck::cast_slice_mut(&mut values))), width, height);
         values
@@ -337,6 +360,8 @@ impl Texture {
     fn read_raw(&self, level: u32, pixels: PixelPackData<'_>, width: u32, height: u32) {
         let gl = self.device.gl();
         let (width, height, format) = (width as i32, height as i32, self.texel.format());
+        // SAFETY: the device keeps its context current on this thread; the callers give a slice with room for all rows,
+        // or a buffer with it.
         unsafe {
             gl.bind_framebuffer(glow::FRAMEBUFFER, Some(self.framebuffers[level as usize]));
             gl.read_pixels(0, 0, width, height, format, glow::FLOAT, pixels);
@@ -347,6 +372,7 @@ impl Texture {
 impl Drop for Texture {
     fn drop(&mut self) {
         let Some(gl) = self.device.to_free() else { return };
+        // SAFETY: the device's context is there and current, and nothing uses what is freed from here on.
         unsafe {
             for &framebuffer in &self.framebuffers {
                 gl.delete_framebuffer(framebuffer);
@@ -385,6 +411,7 @@ pub(crate) struct Triangle {
 
 impl Triangle {
     pub fn new(device: &Rc<Device>) -> Result<Self> {
+        // SAFETY: the device keeps its context current on this thread.
         let raw = unsafe { device.gl().create_vertex_array() }.map_err(refused("vertex array"))?;
         Ok(Self { device: device.clone(), raw })
     }
@@ -392,6 +419,7 @@ impl Triangle {
     /// Runs the current program's fragment shader once for each texel of the current target.
     pub fn draw(&self) {
         let gl = self.device.gl();
+        // SAFETY: the device keeps its context current on this thread, and the array and what it points to are there.
         unsafe {
             gl.bind_vertex_array(Some(self.raw));
             gl.draw_arrays(glow::TRIANGLES, 0, 3);
@@ -402,6 +430,7 @@ impl Triangle {
 impl Drop for Triangle {
     fn drop(&mut self) {
         if let Some(gl) = self.device.to_free() {
+            // SAFETY: the device's context is there and current, and nothing uses what is freed from here on.
             unsafe { gl.delete_vertex_array(self.raw) }
         }
     }

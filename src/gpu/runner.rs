@@ -68,12 +68,16 @@ impl Runner {
         self.run(label(path), || {
             target.target(0);
             program.bind();
+            // SAFETY: the device keeps its context current on this thread, and numbers are all that it is given.
             unsafe { gl.enable(glow::SCISSOR_TEST) };
             for band in 0..bands {
+                // SAFETY: the device keeps its context current on this thread, and numbers are all that it is given.
                 unsafe { gl.scissor(0, edge(band), width, edge(band + 1) - edge(band)) };
                 self.triangle.draw();
+                // SAFETY: the device keeps its context current on this thread, and numbers are all that it is given.
                 unsafe { gl.flush() };
             }
+            // SAFETY: the device keeps its context current on this thread, and numbers are all that it is given.
             unsafe { gl.disable(glow::SCISSOR_TEST) };
         });
         Ok(())
@@ -96,12 +100,14 @@ impl Runner {
         let gl = self.device.gl();
         self.run(label(path), || {
             target.target(level);
+            // SAFETY: the device keeps its context current on this thread, and numbers are all that it is given.
             unsafe {
                 gl.enable(glow::BLEND);
                 gl.blend_equation(glow::MIN);
             }
             program.bind();
             self.triangle.draw();
+            // SAFETY: the device keeps its context current on this thread, and numbers are all that it is given.
             unsafe {
                 gl.blend_equation(glow::FUNC_ADD);
                 gl.disable(glow::BLEND);
@@ -125,10 +131,12 @@ impl Runner {
     /// Runs `work` as a part of the frame with a name and, while timing is on, a time.
     pub fn run<T>(&self, label: &str, work: impl FnOnce() -> T) -> T {
         let gl = self.device.gl();
+        // SAFETY: the device keeps its context current on this thread, and numbers are all that it is given.
         unsafe { gl.push_debug_group(glow::DEBUG_SOURCE_APPLICATION, 0, label) };
         self.timer.borrow_mut().begin();
         let result = work();
         self.timer.borrow_mut().end(label);
+        // SAFETY: the device keeps its context current on this thread, and numbers are all that it is given.
         unsafe { gl.pop_debug_group() };
         result
     }

@@ -47,9 +47,12 @@ impl Screen {
         }
         let refused = |reason| Error::Gl(format!("screen: {reason}"));
         let gl = device.gl();
+        // SAFETY: the device keeps its context current on this thread.
         let texture = unsafe { gl.create_texture() }.map_err(refused)?;
+        // SAFETY: the device keeps its context current on this thread.
         let framebuffer = unsafe { gl.create_framebuffer() }.map_err(refused)?;
         let (width, height) = (size[0] as i32, size[1] as i32);
+        // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
         let status = unsafe {
             gl.active_texture(glow::TEXTURE0 + WORKBENCH.1);
             gl.bind_texture(glow::TEXTURE_2D, Some(texture));
@@ -82,6 +85,7 @@ impl Screen {
         let gl = self.device.gl();
         let bottom = self.size[1] as i32 - (region.y + region.height) as i32;
         let (x, width, height) = (region.x as i32, region.width as i32, region.height as i32);
+        // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
         unsafe {
             gl.bind_framebuffer(glow::FRAMEBUFFER, self.own.map(|(framebuffer, _)| framebuffer));
             gl.viewport(x, bottom, width, height);
@@ -108,6 +112,7 @@ impl Screen {
     pub fn clear(&self, [red, green, blue]: [f32; 3]) {
         self.target(self.whole());
         let gl = self.device.gl();
+        // SAFETY: the device keeps its context current on this thread, and numbers are all that it is given.
         unsafe { gl.clear_buffer_f32_slice(glow::COLOR, 0, &[red, green, blue, 1.0]) }
     }
 
@@ -119,6 +124,7 @@ impl Screen {
         let top = bottom + region.height as i32;
         let [width, height] = self.size.map(|side| side as i32);
         let gl = self.device.gl();
+        // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
         unsafe {
             gl.bind_framebuffer(glow::READ_FRAMEBUFFER, self.own.map(|(framebuffer, _)| framebuffer));
             let (colour, filter) = (glow::COLOR_BUFFER_BIT, glow::NEAREST);
@@ -132,6 +138,8 @@ impl Screen {
         let [width, height] = self.size;
         let mut pixels = vec![[0; 4]; width as usize * height as usize];
         let gl = self.device.gl();
+        // SAFETY: the device keeps its context current on this thread, no buffer is bound to read into, and the slice
+        // holds all of the screen's pixels.
         unsafe {
             gl.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
             let bytes = bytemuck::cast_slice_mut(&mut pixels);
@@ -146,6 +154,7 @@ impl Screen {
 impl Drop for Screen {
     fn drop(&mut self) {
         if let (Some((framebuffer, texture)), Some(gl)) = (self.own, self.device.to_free()) {
+            // SAFETY: the device's context is there and current, and nothing uses what is freed from here on.
             unsafe {
                 gl.delete_framebuffer(framebuffer);
                 gl.delete_texture(texture);

@@ -1,8 +1,8 @@
 //! Shaders: read from `shaders/`, put together, compiled.
 //!
 //! A source is a file of that folder. `#include "path"` pulls in another, once; each file keeps its own line numbers,
-//! and the driver's messages name the file. Every shader begins with the version, the binding numbers of
-//! [`super::layout`] and the caller's own definitions.
+//! and the driver's messages name the file. Every shader begins with the version, the binding numbers and
+//! the other numbers of [`super::layout`], and the caller's own definitions.
 
 use std::fmt::Write as _;
 use std::rc::Rc;
@@ -10,7 +10,7 @@ use std::rc::Rc;
 use glow::HasContext as _;
 
 use super::context::Device;
-use super::layout::BINDINGS;
+use super::layout::{BINDINGS, NUMBERS};
 use crate::{Error, Result, limits};
 
 /// What a software renderer takes to compile a program, bytes.
@@ -122,32 +122,40 @@ impl Program {
     fn link_texts(device: &Rc<Device>, name: &str, texts: Vec<(u32, String, Vec<String>)>) -> Result<Self> {
         limits::room(COMPILING, "a shader")?;
         let gl = device.gl();
+        // SAFETY: the device keeps its context current on this thread.
         let raw = unsafe { gl.create_program() }.map_err(|reason| Error::Gl(format!("{name}: {reason}")))?;
         let program = Self { device: device.clone(), raw };
         for (stage, text, files) in texts {
             let shader = compile(gl, stage, &text, &files)?;
+            // SAFETY: the device keeps its context current on this thread, and the program and its shaders are its own.
             unsafe {
                 gl.attach_shader(raw, shader);
                 // Freed together with the program from here on.
                 gl.delete_shader(shader);
             }
         }
+        // SAFETY: the device keeps its context current on this thread, and the program and its shaders are its own.
         unsafe { gl.link_program(raw) };
+        // SAFETY: the device keeps its context current on this thread, and the program and its shaders are its own.
         if unsafe { gl.get_program_link_status(raw) } {
             Ok(program)
         } else {
+            // SAFETY: the device keeps its context current on this thread, and the program and its shaders are its own.
             Err(Error::Gl(format!("{name} does not link: {}", unsafe { gl.get_program_info_log(raw) })))
         }
     }
 
     /// Makes the program current.
     pub fn bind(&self) {
+        // SAFETY: the device keeps its context current on this thread, and the program and its shaders are its own.
         unsafe { self.device.gl().use_program(Some(self.raw)) }
     }
 
     /// Runs a compute program, and makes what it stores visible to every later pass.
     pub fn dispatch(&self, groups: [u32; 3]) {
         self.bind();
+        // SAFETY: the device keeps its context current on this thread; the shader reads and writes within what is
+        // bound, as GL holds it to.
         unsafe {
             self.device.gl().dispatch_compute(groups[0], groups[1], groups[2]);
             self.device.gl().memory_barrier(glow::SHADER_STORAGE_BARRIER_BIT);
@@ -158,6 +166,7 @@ impl Program {
 impl Drop for Program {
     fn drop(&mut self) {
         if let Some(gl) = self.device.to_free() {
+            // SAFETY: the device's context is there and current, and nothing uses what is freed from here on.
             unsafe { gl.delete_program(self.raw) }
         }
     }
@@ -165,15 +174,20 @@ impl Drop for Program {
 
 fn compile(gl: &glow::Context, stage: u32, source: &str, files: &[String]) -> Result<glow::Shader> {
     let path = files.first().map_or("a shader", String::as_str);
+    // SAFETY: the device keeps its context current on this thread.
     let shader = unsafe { gl.create_shader(stage) }.map_err(|reason| Error::Gl(format!("{path}: {reason}")))?;
+    // SAFETY: the device keeps its context current on this thread, and the program and its shaders are its own.
     unsafe {
         gl.shader_source(shader, source);
         gl.compile_shader(shader);
     }
+    // SAFETY: the device keeps its context current on this thread, and the program and its shaders are its own.
     if unsafe { gl.get_shader_compile_status(shader) } {
         return Ok(shader);
     }
+    // SAFETY: the device keeps its context current on this thread, and the program and its shaders are its own.
     let log = unsafe { gl.get_shader_info_log(shader) };
+    // SAFETY: the device keeps its context current on this thread, and the shader is not used from here on.
     unsafe { gl.delete_shader(shader) };
     let legend: Vec<_> = files.iter().enumerate().map(|(index, file)| format!("{index} is {file}")).collect();
     Err(Error::Gl(format!("{path} does not compile ({}):\n{log}", legend.join(", "))))
@@ -190,7 +204,7 @@ fn assemble(path: &str, defines: &[Define<'_>]) -> Result<(String, Vec<String>)>
 /// What every shader begins with.
 fn head(defines: &[Define<'_>]) -> String {
     let mut text = String::from("#version 430 core\n");
-    for (name, number) in BINDINGS {
+    for (name, number) in BINDINGS.into_iter().chain(NUMBERS) {
         let _ = writeln!(text, "#define {name} {number}");
     }
     for (name, value) in defines {

@@ -6,8 +6,10 @@ use super::resource::Buffer;
 use super::runner::Runner;
 use crate::Result;
 
-/// Modes along each side of a work group's tile; as in `spectrum.comp`.
-const TILE: u32 = 8;
+/// Modes along each side of a work group's tile.
+pub(super) const TILE: u32 = 8;
+/// And so many of a tile's are one invocation's.
+pub(super) const MINE: u32 = 4;
 /// A slice is at least this many ghosts: fewer would cost more in summing slices than they win in parallel.
 const SHORTEST_SLICE: usize = 128;
 /// And at most this many: a longer one would need more rounds of its loops than Mesa's software renderer runs (65535;

@@ -30,6 +30,7 @@ pub(crate) struct Timer {
 
 impl Timer {
     pub fn new(device: &Rc<Device>) -> Result<Self> {
+        // SAFETY: the device keeps its context current on this thread.
         let query =
             unsafe { device.gl().create_query() }.map_err(|reason| Error::Gl(format!("timer query: {reason}")))?;
         Ok(Self { device: device.clone(), query, enabled: false, started: None, times: Vec::new() })
@@ -43,6 +44,7 @@ impl Timer {
         if self.enabled {
             self.device.finish();
             self.started = Some(Instant::now());
+            // SAFETY: the device keeps its context current on this thread, and the query is its own.
             unsafe { self.device.gl().begin_query(glow::TIME_ELAPSED, self.query) };
         }
     }
@@ -50,10 +52,12 @@ impl Timer {
     pub fn end(&mut self, pass: &str) {
         let Some(started) = self.started.take() else { return };
         let gl = self.device.gl();
+        // SAFETY: the device keeps its context current on this thread, and the query is its own.
         unsafe { gl.end_query(glow::TIME_ELAPSED) };
         self.device.finish();
         let wall_ms = started.elapsed().as_secs_f64() * 1e3;
         // The 32-bit result saturates at 4.3 s; glow's 64-bit call is not safe on every 4.3 driver.
+        // SAFETY: the device keeps its context current on this thread, and the query is its own.
         let nanoseconds = unsafe { gl.get_query_parameter_u32(self.query, glow::QUERY_RESULT) };
         let gpu_ms = (nanoseconds > 0 && nanoseconds < u32::MAX).then(|| f64::from(nanoseconds) * 1e-6);
         self.times.push(PassTime { pass: pass.to_owned(), wall_ms, gpu_ms });
@@ -67,6 +71,7 @@ impl Timer {
 impl Drop for Timer {
     fn drop(&mut self) {
         if let Some(gl) = self.device.to_free() {
+            // SAFETY: the device's context is there and current, and nothing uses what is freed from here on.
             unsafe { gl.delete_query(self.query) }
         }
     }

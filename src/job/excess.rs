@@ -1,8 +1,8 @@
-//! Pictures that a slip of a strength or of a flux has made too bright for anything.
+//! Glare that a slip of a strength or of a flux has made too bright for anything.
 
 use rayon::prelude::*;
 
-use super::Job;
+use super::Found;
 use crate::choices::Normalize;
 use crate::photo::Photo;
 use crate::plan::Plan;
@@ -11,7 +11,7 @@ use crate::plan::Plan;
 /// picture is some times as bright as a dark room.
 const ABSURD: f64 = 1000.0;
 
-impl Job<'_> {
+impl Found<'_> {
     /// Says so where the glare is out of all proportion to the photo, which is not yet overlaid.
     pub(super) fn absurd(&self, plan: &Plan) -> Option<String> {
         let (strength, scale) = (self.look.strength, plan.scale.into_iter().fold(0.0, f64::max));
@@ -27,16 +27,6 @@ impl Job<'_> {
                  {strength:?} meant, and are the lights in the photo's unit?"
             )
         })
-    }
-
-    /// Says so where the picture has values beyond `largest`, which is what its file holds.
-    pub fn beyond(&self, largest: f32) -> Option<String> {
-        let beyond = |pixel: &&[f32; 4]| pixel[..3].iter().any(|value| value.abs() > largest || value.is_nan());
-        // Those that the photo had have been told.
-        let before = self.bad.nan + self.bad.infinite;
-        let count = self.photo.pixels.par_iter().filter(beyond).count().saturating_sub(before);
-        let pixels = if count == 1 { "pixel of the picture is" } else { "pixels of the picture are" };
-        (count > 0).then(|| format!("{count} {pixels} beyond {largest:.4e}, the largest value that its file holds"))
     }
 }
 

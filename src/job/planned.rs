@@ -1,71 +1,142 @@
-//! The plan that a look asks for, and what it rests on.
+//! The second step: how the glare is computed; and how it becomes the third.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::Result;
-use crate::calibration::Known;
-use crate::gpu::Info;
-use crate::look::Accuracy;
-use crate::plan::{self, CostModel, Plan, Request};
-use crate::problem::Problem;
-use crate::scene::Goal;
+use super::{Computed, Computer, Done, Found, Planning, Stages, Step, Wanted, Watch};
+use crate::certificate::{Certificate, Verify};
+use crate::gpu::{Info, PassTime};
+use crate::photo::{self, Photo};
+use crate::plan::Plan;
+use crate::renderer::{Pending, Picture, Settings};
+use crate::{Error, Result};
 
-/// A plan, and what it rests on.
-pub struct Planned {
-    pub plan: Plan,
-    /// The cost model that decided.
-    pub model: CostModel,
-    /// The file that the cost model is from; none for the built-in one.
-    pub calibration: Option<PathBuf>,
-    /// What a person ought to know: of a tolerance that was raised to the floor.
-    pub notes: Vec<String>,
-    /// What went wrong without keeping the plan from being made.
-    pub warnings: Vec<String>,
+/// A photo for which there is a plan.
+pub struct Planned<'a> {
+    /// The photo, and what glares in it.
+    pub found: Found<'a>,
+    /// How that is computed.
+    pub planning: Planning,
+    /// What it was planned for.
+    pub info: Arc<Info>,
 }
 
-/// The plan for a problem on a device, or, without one, on a device without limits; by what is known of its speed.
-///
-/// # Errors
-/// Those of [`plan::plan`], [`plan::plan_at_least`] and [`plan::plan_within`].
-pub fn plan(accuracy: &Accuracy, problem: &Arc<Problem>, device: Option<&Info>, known: Known) -> Result<Planned> {
-    let &Accuracy { goal, allow_floor, degree, period, evaluator } = accuracy;
-    // A budget is bought from the loosest tolerance on, whatever the request says.
-    let asked = match goal {
-        Goal::Tolerance(tolerance) => tolerance,
-        Goal::Budget(_) => plan::LOOSEST,
-    };
-    let unlimited = Request::new(asked);
-    let request = Request {
-        period,
-        degree,
-        evaluator,
-        loop_rounds: device.and_then(Info::loop_rounds).unwrap_or(usize::MAX),
-        // A term takes three vec4.
-        most_terms: device.map_or(unlimited.most_terms, |info| (info.limits.storage_block / 48) as usize),
-        cost_model: known.model,
-        ..unlimited
-    };
-    let (plan, note) = match goal {
-        Goal::Budget(budget) => (plan::plan_within(problem, &request, budget)?, None),
-        Goal::Tolerance(_) if allow_floor => {
-            let plan = plan::plan_at_least(problem, &request)?;
-            let (floor, by) = (plan.tolerance, plan.evaluator());
-            let note = (floor > asked).then(|| {
-                format!(
-                    "the tolerance is {floor:.1e} instead of {asked:.1e}: what 32-bit floats can give here, by {by}"
-                )
-            });
-            (plan, note)
+/// What was drawn; some of the picture may still be on its way back.
+struct Drawn {
+    picture: Option<(Photo, Pending)>,
+    glare: Option<Photo>,
+    passes: Vec<PassTime>,
+    measured_ms: Option<f64>,
+}
+
+impl<'a> Planned<'a> {
+    /// Computes the spectrum, composites onto the photo and measures the error. `computer` has to be the one that the
+    /// plan was made for.
+    ///
+    /// # Errors
+    /// Where the driver refuses; [`Error::NotFinite`]; [`Error::Cancelled`].
+    pub fn render(self, computer: &mut Computer, wanted: Wanted, watch: &impl Watch) -> Result<Done<'a>> {
+        let Self { found, planning, info } = self;
+        let Found { look, photo, facts, bad, scene, mut stages, mut warnings, settings } = found;
+        // What is not finite in the photo already is no fault of the glare's.
+        let before = if bad.nan + bad.infinite > 0 { photo::not_finite(&photo.pixels) } else { 0 };
+        watch.begin(Step::Computing)?;
+        let renderer = computer.renderer()?;
+        renderer.field.set_timing(wanted.times);
+        let drawn = draw(renderer, photo, &planning.plan, &settings, wanted, &mut stages);
+        renderer.field.set_timing(false);
+        let Drawn { picture, glare, passes, measured_ms } = drawn?;
+
+        let certificate = certify(renderer, &planning.plan, wanted.verify, &mut stages, watch)?;
+        if let Err(error) = certificate.check() {
+            warnings.push(error.to_string());
         }
-        Goal::Tolerance(_) => (plan::plan(problem, &request)?, None),
+        let picture = match picture {
+            Some((mut picture, pending)) => {
+                renderer.collect(pending, &mut picture.pixels)?;
+                Some(picture)
+            }
+            None => None,
+        };
+        stays_finite(picture.as_ref(), before, glare.as_ref(), &certificate)?;
+        let computed = Some(Computed { info, planning, certificate, passes, measured_ms });
+        Ok(Done { look, facts, bad, scene, picture, glare, computed, stages, warnings })
+    }
+}
+
+/// Draws what is wanted. The picture takes over the photo's memory, unless someone else holds it.
+fn draw(
+    renderer: &mut Picture,
+    photo: Arc<Photo>,
+    plan: &Plan,
+    settings: &Settings,
+    wanted: Wanted,
+    stages: &mut Stages,
+) -> Result<Drawn> {
+    let frame = photo.frame;
+    stages.time("spectrum", || renderer.field.set_scene(plan))?;
+    // What the plan has computed of the spectrum is the spectrum's.
+    let computed = plan.spectrum_milliseconds();
+    stages.shift("plan", "spectrum", computed);
+    let mut passes = renderer.field.take_times();
+    let spectrum = computed + milliseconds(&passes);
+    let glare = match wanted.glare {
+        true => Some(photo.companion(stages.time("glare", || renderer.glare(frame, settings))?)),
+        false => None,
     };
-    let Known { model, file, warning } = known;
-    Ok(Planned {
-        plan,
-        model,
-        calibration: file,
-        notes: note.into_iter().collect(),
-        warnings: warning.into_iter().collect(),
+    let mut times = renderer.field.take_times();
+    let mut picture = None;
+    if wanted.picture {
+        passes.append(&mut times);
+        let mut photo = Arc::unwrap_or_clone(photo);
+        let pending = stages.time("composite", || {
+            if wanted.times {
+                // A pass can only be timed while nothing else is under way.
+                return renderer.composite(frame, &mut photo.pixels, settings).map(|()| Pending::default());
+            }
+            renderer.submit(frame, &mut photo.pixels, settings)
+        })?;
+        picture = Some((photo, pending));
+        times = renderer.field.take_times();
+    }
+    let measured_ms = wanted.times.then(|| spectrum + milliseconds(&times));
+    passes.extend(times);
+    Ok(Drawn { picture, glare, passes, measured_ms })
+}
+
+/// Holds the field against the direct sum.
+fn certify(
+    renderer: &mut Picture,
+    plan: &Plan,
+    verify: Verify,
+    stages: &mut Stages,
+    watch: &impl Watch,
+) -> Result<Certificate> {
+    watch.begin(Step::Measuring)?;
+    stages.time("certify", || match verify {
+        Verify::Sample => Certificate::measure(&mut renderer.field, plan),
+        Verify::Full => {
+            watch.measured(plan.problem().frame().window.pixels());
+            Certificate::measure_all(&mut renderer.field, plan, |pixels| watch.advance(pixels))
+        }
     })
+}
+
+/// An error where the picture is not finite though the photo is, but for `before` pixels, or where the glare is not.
+fn stays_finite(
+    picture: Option<&Photo>,
+    before: usize,
+    glare: Option<&Photo>,
+    certificate: &Certificate,
+) -> Result<()> {
+    let count = |photo: Option<&Photo>| photo.map_or(0, |photo| photo::not_finite(&photo.pixels));
+    match count(picture).saturating_sub(before).max(count(glare)).max(certificate.not_finite) {
+        0 => Ok(()),
+        pixels => Err(Error::NotFinite { pixels }),
+    }
+}
+
+/// What a budget is for; moving the picture to the device and back is not in it.
+fn milliseconds(passes: &[PassTime]) -> f64 {
+    let counts = |time: &&PassTime| time.pass != "upload" && time.pass != "readback";
+    passes.iter().filter(counts).map(|time| time.wall_ms).sum()
 }

@@ -4,7 +4,7 @@ use crate::choices::{Mix, Normalize};
 use crate::look::{Gathered, Look};
 use crate::photo::Photo;
 use crate::renderer::Settings;
-use crate::scene::{Emission, Ghost};
+use crate::scene::{Emission, Ghost, is_light};
 use crate::{Error, Result};
 
 /// What the composite is told, and what to warn of. Where light is taken from the photo's lights, `bright` gives
@@ -47,9 +47,7 @@ pub fn bright_light(photo: &Photo, threshold: f64) -> [f64; 3] {
     let (area, threshold) = (photo.frame.pixel_size().powi(2), threshold as f32);
     let mut bright = [0.0; 3];
     for pixel in &photo.pixels {
-        // As the composite's shader decides.
-        let luminance = emission.luminance(pixel);
-        if luminance >= threshold && luminance > 0.0 {
+        if is_light(emission.luminance(pixel), threshold) {
             let share = f64::from(emission.share(pixel)) * area;
             for (bright, &light) in bright.iter_mut().zip(pixel) {
                 *bright += f64::from(light.max(0.0)) * share;

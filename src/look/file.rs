@@ -1,6 +1,6 @@
 //! Looks as scene files, and back.
 
-use super::{Accuracy, Look, LookLens, LookLights};
+use super::{Accuracy, Look, LookLens, LookLights, Shared};
 use crate::Result;
 use crate::scene::presets::DEFAULT_PRESET;
 use crate::scene::{AccuracySection, FindOptions, FindSection, LookSection, SceneFile};
@@ -14,16 +14,16 @@ impl Look {
         // Ghosts alone are the whole scene: nothing then is looked for in the photo.
         let ghosts_only = !scene.ghosts.is_empty() && scene.lens_ghosts.is_empty() && scene.preset.is_none();
         let lights = match scene.lights {
-            Some(lights) if scene.find.add && !lights.is_empty() => LookLights::FoundAnd(lights),
+            Some(lights) if scene.find.add && !lights.is_empty() => LookLights::FoundAnd(lights.into()),
             Some(_) | None if scene.find.add => LookLights::Found,
-            Some(lights) => LookLights::Listed(lights),
-            None if ghosts_only => LookLights::Listed(Vec::new()),
+            Some(lights) => LookLights::Listed(lights.into()),
+            None if ghosts_only => LookLights::Listed(Shared::default()),
             None => LookLights::Found,
         };
         let lens = match scene.preset {
             Some(name) => LookLens::preset(&name)?,
             None if scene.lens_ghosts.is_empty() => LookLens::preset(DEFAULT_PRESET)?,
-            None => LookLens::Own(scene.lens_ghosts),
+            None => LookLens::Own(scene.lens_ghosts.into()),
         };
         let LookSection { strength, size, tint, mix, normalize } = scene.look;
         let AccuracySection { goal, allow_floor, evaluator } = scene.accuracy;
@@ -34,7 +34,7 @@ impl Look {
             size: size.unwrap_or(1.0),
             tint: tint.unwrap_or([1.0; 3]),
             lights,
-            ghosts: scene.ghosts,
+            ghosts: scene.ghosts.into(),
             find: scene.find.options(),
             strength: strength.unwrap_or(1.0),
             mix: mix.unwrap_or_default(),
@@ -52,30 +52,32 @@ impl Look {
     /// The scene file that describes the look, with every value spelt out. The lens of a file becomes a table of the
     /// scene's own.
     pub fn to_scene(&self) -> SceneFile {
-        let (preset, lens_ghosts) = match &self.lens {
+        let Self { description, lens, axis, size, tint, lights, ghosts, find, strength, mix, normalize, accuracy } =
+            self;
+        let (preset, lens_ghosts) = match lens {
             LookLens::Preset(lens) => (Some(lens.name.clone()), Vec::new()),
             LookLens::File(_, lens) => (None, lens.ghosts.clone()),
-            LookLens::Own(ghosts) => (None, ghosts.clone()),
+            LookLens::Own(ghosts) => (None, ghosts.to_vec()),
         };
-        let lights = match &self.lights {
+        let listed = match lights {
             LookLights::Found => None,
-            LookLights::Listed(lights) | LookLights::FoundAnd(lights) => Some(lights.clone()),
+            LookLights::Listed(lights) | LookLights::FoundAnd(lights) => Some(lights.to_vec()),
         };
-        let add = matches!(self.lights, LookLights::FoundAnd(_));
-        let Accuracy { goal, allow_floor, degree, period, evaluator } = self.accuracy;
-        let FindOptions { threshold, merge, max_lights, firefly_limit } = self.find;
+        let add = matches!(lights, LookLights::FoundAnd(_));
+        let Accuracy { goal, allow_floor, degree, period, evaluator } = *accuracy;
+        let FindOptions { threshold, merge, max_lights, firefly_limit } = *find;
         SceneFile {
-            description: self.description.clone(),
+            description: description.clone(),
             preset,
-            axis: Some(self.axis),
+            axis: Some(*axis),
             period,
             degree,
             look: LookSection {
-                strength: Some(self.strength),
-                size: Some(self.size),
-                tint: Some(self.tint),
-                mix: Some(self.mix),
-                normalize: Some(self.normalize),
+                strength: Some(*strength),
+                size: Some(*size),
+                tint: Some(*tint),
+                mix: Some(*mix),
+                normalize: Some(*normalize),
             },
             find: FindSection {
                 threshold,
@@ -85,8 +87,8 @@ impl Look {
                 add,
             },
             accuracy: AccuracySection { goal: Some(goal), allow_floor, evaluator },
-            lights,
-            ghosts: self.ghosts.clone(),
+            lights: listed,
+            ghosts: ghosts.to_vec(),
             lens_ghosts,
         }
     }
@@ -116,12 +118,12 @@ mod tests {
         let Lens { ghosts: table, .. } = presets::named("zoom").unwrap();
         let full = Look {
             description: "all of it".into(),
-            lens: LookLens::Own(table.clone()),
+            lens: LookLens::Own(table.into()),
             axis: DVec2::new(0.1, 0.2),
             size: 0.7,
             tint: [1.0, 0.3, 0.0],
-            lights: LookLights::Listed(vec![light]),
-            ghosts: vec![ghost.clone()],
+            lights: LookLights::Listed(vec![light].into()),
+            ghosts: vec![ghost.clone()].into(),
             find: FindOptions { threshold: Some(3.5), merge: 0.1, max_lights: 5, firefly_limit: 20.0 },
             strength: 1.7,
             mix: Mix::Energy,
@@ -134,14 +136,15 @@ mod tests {
                 evaluator: Some(Evaluator::Grid),
             },
         };
-        let none = Look { lights: LookLights::Listed(Vec::new()), ..Look::default() };
+        let none = Look { lights: LookLights::Listed(Shared::default()), ..Look::default() };
         // Without the preset's name the ghost would be the whole scene.
-        let ghost_and_photo = Look { ghosts: vec![ghost], ..Look::default() };
-        let added = Look { lights: LookLights::FoundAnd(vec![light]), ..Look::default() };
+        let ghost_and_photo = Look { ghosts: vec![ghost].into(), ..Look::default() };
+        let added = Look { lights: LookLights::FoundAnd(vec![light].into()), ..Look::default() };
         for look in [Look::default(), full.clone(), none, ghost_and_photo, added] {
             assert_eq!(through_a_file(&look), look);
         }
-        let filed = Look { lens: LookLens::File("lens.toml".into(), presets::named("zoom").unwrap()), ..full.clone() };
+        let filed =
+            Look { lens: LookLens::File("lens.toml".into(), presets::named("zoom").unwrap().into()), ..full.clone() };
         assert_eq!(through_a_file(&filed), full);
     }
 
@@ -149,7 +152,7 @@ mod tests {
     fn ghosts_alone_are_the_whole_scene() {
         let ghost = Ghost { bell: Bell::Gaussian, center: DVec2::ZERO, size: DVec2::ONE, radiance: [1.0; 3] };
         let look = Look::from_scene(SceneFile { ghosts: vec![ghost.clone()], ..SceneFile::default() }).unwrap();
-        assert_eq!((&look.lights, look.ghosts(&[])), (&LookLights::Listed(Vec::new()), vec![ghost]));
+        assert_eq!((&look.lights, look.ghosts(&[])), (&LookLights::Listed(Shared::default()), vec![ghost]));
         assert_eq!(through_a_file(&look), look);
     }
 
@@ -167,7 +170,7 @@ mod tests {
             ..SceneFile::default()
         };
         let look = Look::from_scene(file(Some(vec![light]))).unwrap();
-        assert_eq!(look.lights, LookLights::FoundAnd(vec![light]));
+        assert_eq!(look.lights, LookLights::FoundAnd(vec![light].into()));
         let found = Light { flux: [2.0; 3], ..light };
         assert_eq!((&*look.lights(&[found]), look.searches()), (&[found, light][..], true));
         for nothing in [None, Some(Vec::new())] {
@@ -183,8 +186,8 @@ mod tests {
             look.add_lights(vec![light]);
             look.lights
         };
-        assert_eq!(added(LookLights::Found), LookLights::FoundAnd(vec![light]));
-        assert_eq!(added(LookLights::FoundAnd(vec![light])), LookLights::FoundAnd(vec![light; 2]));
-        assert_eq!(added(LookLights::Listed(Vec::new())), LookLights::Listed(vec![light]));
+        assert_eq!(added(LookLights::Found), LookLights::FoundAnd(vec![light].into()));
+        assert_eq!(added(LookLights::FoundAnd(vec![light].into())), LookLights::FoundAnd(vec![light; 2].into()));
+        assert_eq!(added(LookLights::Listed(Shared::default())), LookLights::Listed(vec![light].into()));
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::{Look, LookLights};
 use crate::choices::Mix;
 use crate::photo::Photo;
-use crate::scene::{self, Emission, Found, Ghost, Lens, Light};
+use crate::scene::{self, Emission, FindOptions, Found, Ghost, Lens, Light};
 
 /// What glares in one photo.
 pub struct Gathered {
@@ -19,11 +19,26 @@ pub struct Gathered {
     pub ghosts: Arc<[Ghost]>,
 }
 
+/// What a photo was searched by, and what was found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Search {
+    /// The rules.
+    pub options: FindOptions,
+    /// What there is by them.
+    pub found: Found,
+}
+
 impl Look {
     /// What glares in a photo. It is searched for lights where none are listed, and for the threshold where light is
     /// taken from it.
     pub fn gather(&self, photo: &Photo) -> Gathered {
-        self.gather_from(self.searches().then(|| self.find(photo)))
+        self.gather_knowing(photo, None)
+    }
+
+    /// The same for a photo that may have been searched already; by other rules than the look's it is searched again.
+    pub fn gather_knowing(&self, photo: &Photo, search: Option<Search>) -> Gathered {
+        let known = search.filter(|search| search.options == self.find).map(|search| search.found);
+        self.gather_from(self.searches().then(|| known.unwrap_or_else(|| self.find(photo))))
     }
 
     /// What glares in a photo of which `found` is known.
@@ -85,7 +100,7 @@ mod tests {
     fn size_keeps_the_flux_of_every_bell_and_tint_scales_it() {
         for bell in Bell::examples() {
             let ghost = Ghost { bell, center: DVec2::ONE, size: DVec2::new(0.3, 0.2), radiance: [1.0, -2.0, 3.0] };
-            let look = Look { size: 1.7, tint: [0.5, 1.0, 2.0], ghosts: vec![ghost.clone()], ..Look::default() };
+            let look = Look { size: 1.7, tint: [0.5, 1.0, 2.0], ghosts: vec![ghost.clone()].into(), ..Look::default() };
             let ghosts = look.ghosts(&[]);
             assert_eq!((ghosts.len(), ghosts[0].size), (1, 1.7 * ghost.size));
             let expected = [0.5, 1.0, 2.0].iter().zip(ghost.flux()).map(|(tint, flux)| tint * flux);
@@ -100,7 +115,8 @@ mod tests {
         let light = Light { position: DVec2::new(0.5, 0.25), flux: [1.0; 3], size: 0.0, muted: false };
         let (bell, size) = (Bell::Gaussian, DVec2::ONE);
         let mirror = LensGhost { bell, along: -1.0, size, tint: [1.0; 3], share: 1.0 };
-        let mut look = Look { lens: LookLens::Own(vec![mirror]), axis: DVec2::new(0.25, -0.25), ..Look::default() };
+        let mut look =
+            Look { lens: LookLens::Own(vec![mirror].into()), axis: DVec2::new(0.25, -0.25), ..Look::default() };
         let muted = Light { muted: true, ..light };
         assert_eq!(look.ghosts(&[muted, light]).len(), 1);
         assert_eq!(look.ghosts(&[light])[0].center, DVec2::new(0.0, -0.75));

@@ -2,9 +2,11 @@
 
 mod file;
 mod gather;
+mod shared;
 
 use std::borrow::Cow;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use glam::DVec2;
 
@@ -13,9 +15,11 @@ use crate::choices::{Evaluator, Mix, Normalize};
 use crate::scene::presets::{self, DEFAULT_PRESET};
 use crate::scene::{FindOptions, Ghost, Goal, Lens, LensGhost, Light};
 
-pub use gather::Gathered;
+pub use gather::{Gathered, Search};
+pub use shared::Shared;
 
-/// Everything that a person sets. The same look gives the same glare, whatever it was made from.
+/// Everything that a person sets. The same look gives the same glare, whatever it was made from. A copy shares its lists,
+/// so that it costs little even of 100,000 lights.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Look {
     /// One line for people.
@@ -31,7 +35,7 @@ pub struct Look {
     /// What shines.
     pub lights: LookLights,
     /// Ghosts that no light makes.
-    pub ghosts: Vec<Ghost>,
+    pub ghosts: Shared<Ghost>,
     /// What counts as a light in the photo.
     pub find: FindOptions,
     /// What the glare is multiplied by, 0 or more; 0 leaves the photo as it is.
@@ -48,11 +52,11 @@ pub struct Look {
 #[derive(Debug, Clone, PartialEq)]
 pub enum LookLens {
     /// One that comes with vglare, by its name.
-    Preset(Lens),
+    Preset(Arc<Lens>),
     /// That of a lens file.
-    File(PathBuf, Lens),
+    File(PathBuf, Arc<Lens>),
     /// A table of the look's own; never empty.
-    Own(Vec<LensGhost>),
+    Own(Shared<LensGhost>),
 }
 
 /// Where the lights are from.
@@ -61,9 +65,9 @@ pub enum LookLights {
     /// The photo is searched.
     Found,
     /// By hand, or from a file.
-    Listed(Vec<Light>),
+    Listed(Shared<Light>),
     /// The photo is searched, and these are added to what is found; never empty.
-    FoundAnd(Vec<Light>),
+    FoundAnd(Shared<Light>),
 }
 
 /// How exact the glare is, and how it is computed; what is `None` is planned.
@@ -91,7 +95,7 @@ impl Default for Look {
             size: 1.0,
             tint: [1.0; 3],
             lights: LookLights::Found,
-            ghosts: Vec::new(),
+            ghosts: Shared::default(),
             find: FindOptions::default(),
             strength: 1.0,
             mix: Mix::default(),
@@ -107,7 +111,7 @@ impl LookLens {
     /// # Errors
     /// [`crate::Error::UnknownPreset`], which lists the names there are.
     pub fn preset(name: &str) -> Result<Self> {
-        presets::named(name).map(Self::Preset)
+        presets::named(name).map(|lens| Self::Preset(Arc::new(lens)))
     }
 
     /// What it makes of a light.
@@ -123,9 +127,9 @@ impl Look {
     /// The lens, with its name for people.
     pub fn lens(&self) -> Lens {
         match &self.lens {
-            LookLens::Preset(lens) | LookLens::File(_, lens) => lens.clone(),
+            LookLens::Preset(lens) | LookLens::File(_, lens) => Lens::clone(lens),
             LookLens::Own(ghosts) => {
-                Lens { name: "scene file".to_owned(), description: self.description.clone(), ghosts: ghosts.clone() }
+                Lens { name: "scene file".to_owned(), description: self.description.clone(), ghosts: ghosts.to_vec() }
             }
         }
     }
@@ -134,8 +138,8 @@ impl Look {
     pub fn lights<'a>(&'a self, found: &'a [Light]) -> Cow<'a, [Light]> {
         match &self.lights {
             LookLights::Found => found.into(),
-            LookLights::Listed(lights) => lights.into(),
-            LookLights::FoundAnd(lights) => [found, lights].concat().into(),
+            LookLights::Listed(lights) => lights.as_slice().into(),
+            LookLights::FoundAnd(lights) => [found, lights.as_slice()].concat().into(),
         }
     }
 
@@ -143,7 +147,7 @@ impl Look {
     pub fn add_lights(&mut self, more: Vec<Light>) {
         match &mut self.lights {
             LookLights::Found if more.is_empty() => {}
-            LookLights::Found => self.lights = LookLights::FoundAnd(more),
+            LookLights::Found => self.lights = LookLights::FoundAnd(more.into()),
             LookLights::Listed(lights) | LookLights::FoundAnd(lights) => lights.extend(more),
         }
     }

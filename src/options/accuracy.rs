@@ -79,11 +79,6 @@ impl AccuracyArgs {
         }
     }
 
-    /// Whether what was measured of this machine is used.
-    pub fn calibrated(&self) -> bool {
-        !self.calibration.no_calibration
-    }
-
     /// The cost model for a device.
     pub fn known(&self, device: Option<&Info>) -> Known {
         self.calibration.known(device)

@@ -42,23 +42,26 @@ fn word(path: &Path) -> Result<String> {
 fn options(look: &Look) -> Result<Vec<String>> {
     let default = Look::default();
     let mut options = Options::default();
-    match &look.lens {
+    // All fields by name: one that is added does not compile until it is an option, or said by a file.
+    let Look { description: _, lens, axis, size, tint, lights: _, ghosts: _, find, strength, mix, normalize, accuracy } =
+        look;
+    match lens {
         LookLens::File(path, _) => options.add("--lens", word(path)?),
-        LookLens::Preset(lens) if look.lens != default.lens => options.add("--preset", &lens.name),
+        LookLens::Preset(preset) if *lens != default.lens => options.add("--preset", &preset.name),
         LookLens::Preset(_) | LookLens::Own(_) => {}
     }
-    options.changed("--axis", look.axis, default.axis, pair);
-    let FindOptions { threshold, merge, max_lights, firefly_limit } = look.find;
+    options.changed("--axis", *axis, default.axis, pair);
+    let FindOptions { threshold, merge, max_lights, firefly_limit } = *find;
     options.given("--threshold", threshold, |x| x.to_string());
     options.changed("--merge", merge, default.find.merge, |x| x.to_string());
     options.changed("--max-lights", max_lights, default.find.max_lights, |n| n.to_string());
     options.changed("--firefly-limit", firefly_limit, default.find.firefly_limit, |x| x.to_string());
-    options.changed("--strength", look.strength, default.strength, |x| x.to_string());
-    options.changed("--size", look.size, default.size, |x| x.to_string());
-    options.changed("--tint", look.tint, default.tint, |[r, g, b]| format!("{r},{g},{b}"));
-    options.changed("--mix", look.mix, default.mix, name);
-    options.changed("--normalize", look.normalize, default.normalize, name);
-    let Accuracy { goal, allow_floor, degree, period, evaluator } = look.accuracy;
+    options.changed("--strength", *strength, default.strength, |x| x.to_string());
+    options.changed("--size", *size, default.size, |x| x.to_string());
+    options.changed("--tint", *tint, default.tint, |[r, g, b]| format!("{r},{g},{b}"));
+    options.changed("--mix", *mix, default.mix, name);
+    options.changed("--normalize", *normalize, default.normalize, name);
+    let Accuracy { goal, allow_floor, degree, period, evaluator } = *accuracy;
     match goal {
         Goal::Tolerance(_) if goal == default.accuracy.goal => {}
         Goal::Tolerance(tolerance) => options.add("--tolerance", tolerance),
@@ -128,8 +131,8 @@ mod tests {
 
     #[test]
     fn what_options_cannot_say_needs_a_file() {
-        let own = Look { lens: LookLens::Own(presets::named("zoom").unwrap().ghosts), ..Look::default() };
-        let listed = Look { lights: LookLights::Listed(Vec::new()), ..Look::default() };
+        let own = Look { lens: LookLens::Own(presets::named("zoom").unwrap().ghosts.into()), ..Look::default() };
+        let listed = Look { lights: LookLights::Listed(Vec::new().into()), ..Look::default() };
         for look in [own, listed] {
             let (photo, output) = (Path::new("a.exr"), Path::new("b.exr"));
             assert!(matches!(command_line(&look, photo, output, None), Err(Error::Usage(_))));

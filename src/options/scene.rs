@@ -57,12 +57,12 @@ impl SceneArgs {
             None => Look::default(),
         };
         if let Some(path) = &self.lens {
-            look.lens = LookLens::File(path.clone(), scene::read_lens(path)?);
+            look.lens = LookLens::File(path.clone(), scene::read_lens(path)?.into());
         } else if let Some(name) = &self.preset {
             look.lens = LookLens::preset(name)?;
         }
         if let Some(path) = &self.lights {
-            look.lights = LookLights::Listed(scene::read_lights(path)?);
+            look.lights = LookLights::Listed(scene::read_lights(path)?.into());
         }
         if let Some(path) = &self.add_lights {
             look.add_lights(scene::read_lights(path)?);

@@ -121,6 +121,19 @@ pub struct Source {
     radiance: Option<Arc<radiance::Header>>,
 }
 
+/// What is told of a photo, pixels apart.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Facts {
+    /// The picture and the window of it that is stored.
+    pub frame: Frame,
+    /// The name of the format that it was read from.
+    pub format: &'static str,
+    /// How a colour sample was stored in the file, in words.
+    pub depth: &'static str,
+    /// What the picture is called in a file that holds several.
+    pub picture: Option<String>,
+}
+
 impl Source {
     /// Scene-linear RGB without alpha, from no file.
     fn plain() -> Self {
@@ -194,6 +207,12 @@ impl Photo {
             Some(Format::Radiance) => "RGBE, 8 bit with a shared exponent",
             _ => self.source.depth.name(),
         }
+    }
+
+    /// What is told of it.
+    pub fn facts(&self) -> Facts {
+        let (format, depth) = (self.format_name(), self.depth_name());
+        Facts { frame: self.frame, format, depth, picture: self.source.picture.clone() }
     }
 
     /// The share of red, green and blue in luminance (Y of CIE 1931); they add up to 1.

@@ -20,6 +20,8 @@ use crate::series::{Factor, Modes as Bells, kappa};
 const EFFORT: usize = 8_000_000;
 /// Ghosts that one task goes through. Tasks are joined in their order, whatever the number of cores.
 const CHUNK: usize = 128;
+/// Nanoseconds of [`work`], at most.
+const MOST_WORK: f64 = 3e8;
 /// More modes than this are not kept track of: a series of so many takes seconds at any size of picture.
 const MOST_MODES: usize = 1 << 18;
 
@@ -27,6 +29,27 @@ const MOST_MODES: usize = 1 << 18;
 pub(super) fn worth_a_try(groups: &[Group]) -> bool {
     const FEW: usize = 16;
     FEW * members(groups) <= EFFORT
+}
+
+/// Whether to look at so many modes: where the plan needs to know them for any series at all, at more of them.
+pub(super) fn worth_looking(groups: &[Group], counts: &[u32], needed: bool) -> bool {
+    let modes: usize = counts.iter().map(|&count| count as usize).sum();
+    let few = modes.saturating_mul(members(groups)) <= EFFORT;
+    modes <= MOST_MODES && (few || needed && work(groups, counts) <= MOST_WORK)
+}
+
+/// What looking at so many modes costs about, in nanoseconds.
+pub(super) fn work(groups: &[Group], counts: &[u32]) -> f64 {
+    const MODE: f64 = 3.0;
+    const TRANSFORM: f64 = 15.0;
+    let one = |group: &Group| {
+        let [n, m] = group.degree;
+        let mine = counts.iter().take(n as usize + 1).map(|&count| count.min(m + 1));
+        let (modes, ghosts) = (mine.map(f64::from).sum::<f64>(), group.members.len() as f64);
+        let tables = if let Bells::Radial(_) = group.bell.shape().modes() { TRANSFORM } else { 0.0 };
+        modes * (MODE * ghosts + tables)
+    };
+    groups.iter().map(one).sum()
 }
 
 fn members(groups: &[Group]) -> usize {
@@ -44,7 +67,7 @@ pub(super) struct Amplitudes {
 }
 
 impl Amplitudes {
-    /// Of these modes; none where looking would take too long.
+    /// Of these modes.
     ///
     /// With the complex coefficients u_n and v_m of a ghost's factors about its centre (φ, ψ), the phases of which are
     /// in turns, mode (n, m) of the field is
@@ -54,17 +77,13 @@ impl Amplitudes {
     /// ```
     ///
     /// and at most κ/2 (|Z₊| + |Z₋|). For a radial bell the transform stands in the place of u_n v_m.
-    pub fn new(ghosts: &[Ghost], groups: &[Group], counts: &[u32], period: DVec2, scale: Rgb) -> Option<Self> {
-        let modes: usize = counts.iter().map(|&count| count as usize).sum();
-        if modes > MOST_MODES || modes.saturating_mul(members(groups)) > EFFORT {
-            return None;
-        }
+    pub fn new(ghosts: &[Ghost], groups: &[Group], counts: &[u32], period: DVec2, scale: Rgb) -> Self {
         let started = Instant::now();
         let sums = View { ghosts, counts, period, scale }.sums(groups);
         let kappas = (0..).zip(counts).flat_map(|(n, &count)| (0..count).map(move |m| kappa(n, m)));
         let (terms, values) = sums.0.iter().zip(kappas).map(|(sums, kappa)| mode(sums, kappa)).unzip();
         let milliseconds = started.elapsed().as_secs_f64() * 1e3;
-        Some(Self { modes: Modes::new(counts.to_vec(), terms, milliseconds), values })
+        Self { modes: Modes::new(counts.to_vec(), terms, milliseconds), values }
     }
 
     /// The modes themselves.

@@ -1,16 +1,19 @@
 //! The plan that one evaluator asks for.
 
+use std::cell::Cell;
 use std::sync::Arc;
 
+use super::effort::Effort;
 use super::period::{self, Reach};
 use super::series::{self, Wide};
 use super::weigh::{self, Weighed};
 use super::{Evaluator, Group, Layer, Plan, Precision, Prediction, Request, cost, direct, rounding, share, terms};
 use crate::problem::Problem;
+use crate::series::{Bell, Modes};
 use crate::{Error, Result};
 
 /// The part of the tolerance that a series needs for its own bounds.
-const NEEDED: f64 = 0.25;
+pub(super) const NEEDED: f64 = 0.25;
 
 /// What all evaluators' plans begin with.
 pub(super) struct Survey {
@@ -20,6 +23,9 @@ pub(super) struct Survey {
     /// Groups that are no part of the series, and what floats of the precision cost their sum.
     pub summed: Vec<Group>,
     pub summed_in: (Precision, f64),
+    /// What planning may cost, and whether that of the bells is in it.
+    pub effort: Effort,
+    pub prepared: Cell<bool>,
 }
 
 impl Survey {
@@ -27,7 +33,38 @@ impl Survey {
         let weighed = weigh::weigh(problem, request.tolerance);
         let groups = terms::group(problem.ghosts(), &weighed);
         let reaches = period::reaches(problem, &weighed);
-        Self { weighed, groups, reaches, summed: Vec::new(), summed_in: Default::default() }
+        Self {
+            weighed,
+            groups,
+            reaches,
+            summed: Vec::new(),
+            summed_in: Default::default(),
+            effort: Effort::unlimited(),
+            prepared: Cell::new(false),
+        }
+    }
+}
+
+impl Survey {
+    /// Takes note of what it costs to have each bell ready for a series, once.
+    ///
+    /// # Errors
+    /// [`Error::Plan`] where that is more than planning may cost.
+    pub fn prepare(&self) -> Result<()> {
+        if self.prepared.replace(true) {
+            return Ok(());
+        }
+        let mut bells: Vec<&Bell> = Vec::new();
+        for group in &self.groups {
+            if !bells.last().is_some_and(|bell| *bell == &group.bell) && !bells.contains(&&group.bell) {
+                bells.push(&group.bell);
+            }
+        }
+        let ready = bells.iter().map(|bell| match bell.shape().modes() {
+            Modes::Product(_) => 0.0,
+            Modes::Radial(radial) => radial.preparation(),
+        });
+        self.effort.spend(ready.sum())
     }
 }
 

@@ -48,6 +48,24 @@ impl<'a> Decay<'a> {
         }
     }
 
+    /// What finding the fewest modes costs about, in nanoseconds, where so many harmonics are found along both axes.
+    pub fn work(&self, harmonics: usize) -> f64 {
+        let harmonics = harmonics as f64;
+        match *self {
+            Self::Product { factor, size } => factor.work(size.min_element()) * harmonics + 5000.0,
+            Self::Radial { radial, .. } => 40.0 * radial.work() + 10.0 * harmonics,
+        }
+    }
+
+    /// What [`Decay::marginals`] of a group cost about, in nanoseconds.
+    pub fn held_work(&self, group: &Group) -> f64 {
+        let [n, m] = group.degree.map(|degree| f64::from(degree + 1));
+        match *self {
+            Self::Product { factor, size } => factor.work(size.min_element()) * (n + m),
+            Self::Radial { radial, .. } => radial.work() * (n * m).min(f64::from(MANY)),
+        }
+    }
+
     /// The fewest modes found that leave out at most `error`: for each harmonic of x how many of y, never growing.
     ///
     /// # Errors
@@ -94,6 +112,9 @@ impl<'a> Decay<'a> {
                 };
                 [held(&x, &y, degree[0]), held(&y, &x, degree[1])]
             }
+            Self::Radial { radial, size } if (degree[0] + 1) * (degree[1] + 1) > MANY => {
+                envelopes(radial, size, degree)
+            }
             Self::Radial { radial, size } => {
                 let counts = vec![degree[1] + 1; degree[0] as usize + 1];
                 let table = Modes::Radial(radial).table(&counts, size);
@@ -106,6 +127,25 @@ impl<'a> Decay<'a> {
             }
         }
     }
+}
+
+/// More modes than this are bounded, and not looked at one by one.
+const MANY: u32 = 20_000;
+
+/// What the modes of each harmonic of x, and of y, hold at most, by a bound m of |ĝ| that never grows: beside harmonic n
+/// at z = a, Σ_m κ_m m(√(a² + b²m²)) is no more than m(a) and twice the integral.
+fn envelopes(radial: &dyn Radial, size: DVec2, degree: [u32; 2]) -> [Vec<f64>; 2] {
+    let turn = TAU * size;
+    let volume = size.element_product();
+    let axis = |degree: u32, along: f64, across: f64| -> Vec<f64> {
+        let doubled = |n: u32| if n == 0 { 1.0 } else { 2.0 };
+        let held = |n: u32| {
+            let a = along * f64::from(n);
+            doubled(n) * volume * (radial.envelope(a) + 2.0 / across * radial.envelope_across(a))
+        };
+        (0..=degree).map(held).collect()
+    };
+    [axis(degree[0], turn.x, turn.y), axis(degree[1], turn.y, turn.x)]
 }
 
 /// The modes whose coefficients are largest: all above a threshold, found by bisection. For a Gaussian they are an

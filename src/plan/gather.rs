@@ -32,6 +32,9 @@ impl Transform {
 /// What a ghost costs in moments beside its own.
 const EACH: f64 = 25.0;
 
+/// Fewer ghosts than this are never worth the moments that their cells have.
+const FEWEST: usize = 25;
+
 /// Groups whose dispatches cost less than so many passes are not worth the thought.
 const FEW: f64 = 10.0;
 
@@ -64,6 +67,9 @@ pub(super) fn choose(
 
 /// The cells that are cheapest for a group, and the error that they leave; none where a dispatch is cheaper.
 fn cheaper(group: &Group, period: DVec2, budget: f64, model: &CostModel) -> Option<(Cells, f64)> {
+    if group.ghosts < FEWEST {
+        return None;
+    }
     let dispatch = cost(group, &Transform::Dispatch, model);
     if group.smallest != group.largest || dispatch < FEW * model.pass {
         return None;

@@ -10,6 +10,8 @@ mod cost;
 mod decay;
 mod decided;
 mod direct;
+mod effort;
+mod floor;
 mod gather;
 mod lattice;
 mod layer;
@@ -84,6 +86,14 @@ mod share {
 /// [`Error::ToleranceBelowFloor`] where f32 cannot be as exact as asked; [`Error::Plan`] where the series that was
 /// asked for cannot be had.
 pub fn plan(problem: &Arc<Problem>, asked: &Request) -> Result<Plan> {
+    attempt(problem, asked)?.map_err(|refusals| floor::most_helpful(problem, asked, refusals))
+}
+
+/// The cheapest plan, or why each of the evaluators that were asked for cannot be had.
+///
+/// # Errors
+/// [`Error::Plan`] where there is no planning for what was asked.
+fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Result<Plan, Vec<Error>>> {
     if !(asked.tolerance > 0.0 && asked.tolerance < 1.0) {
         return Err(Error::Plan(format!("a tolerance of {} is not between 0 and 1", asked.tolerance)));
     }
@@ -99,74 +109,75 @@ pub fn plan(problem: &Arc<Problem>, asked: &Request) -> Result<Plan> {
     let series = asked.degree.is_some() || (asked.period.is_some() && !periodic);
     // Who asks for an evaluator in a period gets it as it comes.
     let given = series || (asked.period.is_some() && asked.evaluator.is_some());
-    let wanted = |evaluator| match request.evaluator {
-        Some(only) => only == evaluator,
-        None => !(series && evaluator == Evaluator::Direct),
+    let wanted = |evaluator: &Evaluator| match request.evaluator {
+        Some(only) => only == *evaluator,
+        None => !(series && *evaluator == Evaluator::Direct),
     };
+    let mut found = Found::default();
+    // The direct sum costs next to nothing to plan, and what it would take bounds what planning the others may.
+    if wanted(&Evaluator::Direct) {
+        found.take(Evaluator::Direct, candidate(problem, &survey, None, request, Evaluator::Direct));
+    }
+    found.bound(&survey);
     let wide = Wide::new(problem, &survey, request);
-    let mut candidates = Vec::new();
-    let mut refusals = Vec::new();
-    let wanted: Vec<Evaluator> = Evaluator::ALL.into_iter().filter(|&evaluator| wanted(evaluator)).collect();
-    for &evaluator in &wanted {
-        match candidate(problem, &survey, wide.as_ref(), request, evaluator) {
+    // The cheapest of them, more often than not, first.
+    let others = [Evaluator::Grid, Evaluator::Rows, Evaluator::Series].into_iter().filter(wanted);
+    let others: Vec<Evaluator> = others.collect();
+    for &evaluator in &others {
+        let plan = candidate(problem, &survey, wide.as_ref(), request, evaluator).and_then(|plan| {
             // In the period that periodic bells bring with them the copies of others may land on the picture.
-            Ok(plan) if !given && plan.predicted.total() > request.tolerance => {
-                let total = plan.predicted.total();
-                let reason = format!("{evaluator} would be off by {total:.1e} in the period of the bells");
-                refusals.push((evaluator, Error::Plan(reason)));
+            let total = plan.predicted.total();
+            if given || total <= request.tolerance {
+                return Ok(plan);
             }
-            Ok(plan) => candidates.push(plan),
-            Err(error) => refusals.push((evaluator, error)),
-        }
+            Err(Error::Plan(format!("{evaluator} would be off by {total:.1e} in the period of the bells")))
+        });
+        found.take(evaluator, plan);
+        found.bound(&survey);
     }
     if let Some(survey) = split::apart(problem, &survey, request) {
+        found.bound(&survey);
         let wide = Wide::new(problem, &survey, request);
-        let series = wanted.iter().filter(|&&evaluator| evaluator != Evaluator::Direct);
+        let split = others.iter().map(|&evaluator| candidate(problem, &survey, wide.as_ref(), request, evaluator));
         // One that cannot be had was never asked for by that name.
-        candidates.extend(series.flat_map(|&evaluator| candidate(problem, &survey, wide.as_ref(), request, evaluator)));
+        found.plans.extend(split.filter_map(Result::ok));
     }
-    let mut costs: Vec<Cost> = candidates.iter().flat_map(|plan: &Plan| plan.costs.clone()).collect();
-    costs.sort_by(|a, b| a.milliseconds.total_cmp(&b.milliseconds));
-    let cheapest = candidates.into_iter().min_by(|a, b| a.costs[0].milliseconds.total_cmp(&b.costs[0].milliseconds));
-    match cheapest {
-        Some(plan) => {
-            let told = |(evaluator, error): (Evaluator, Error)| Refusal { evaluator, reason: error.reason() };
-            Ok(Plan { costs, refused: refusals.into_iter().map(told).collect(), ..plan })
-        }
-        None => {
-            let refusals = refusals.into_iter().map(|(_, error)| error).collect();
-            Err(most_helpful(problem, &survey, request, &wanted, refusals))
-        }
-    }
+    Ok(found.cheapest())
 }
 
-/// The refusal that says what can be had: the lowest tolerance at which there is a plan, where rounding is the reason.
-fn most_helpful(
-    problem: &Arc<Problem>,
-    survey: &Survey,
-    request: &Request,
-    wanted: &[Evaluator],
-    mut refusals: Vec<Error>,
-) -> Error {
-    let lowest = |refusals: &[Error]| {
-        let floors = refusals.iter().filter_map(|refusal| match refusal {
-            Error::ToleranceBelowFloor { floor, .. } => Some(*floor),
-            _ => None,
-        });
-        floors.min_by(f64::total_cmp)
-    };
-    let mut next = lowest(&refusals);
-    // A series may be refused at its floor for another reason, its degree; what is left is the next floor.
-    while let Some(floor) = next.filter(|floor| *floor < 0.99) {
-        let eased = Request { tolerance: 1.0001 * floor, ..*request };
-        let tried = wanted.iter().map(|&evaluator| candidate(problem, survey, None, &eased, evaluator));
-        let (plans, others): (Vec<_>, Vec<_>) = tried.partition(Result::is_ok);
-        if plans.iter().flatten().any(|plan| plan.predicted.total() <= eased.tolerance) {
-            return Error::ToleranceBelowFloor { asked: request.tolerance, floor };
+/// The plans that could be had, and the evaluators that could not.
+#[derive(Default)]
+struct Found {
+    plans: Vec<Plan>,
+    refusals: Vec<(Evaluator, Error)>,
+}
+
+impl Found {
+    fn take(&mut self, evaluator: Evaluator, plan: Result<Plan>) {
+        match plan {
+            Ok(plan) => self.plans.push(plan),
+            Err(error) => self.refusals.push((evaluator, error)),
         }
-        next = lowest(&others.into_iter().filter_map(Result::err).collect::<Vec<_>>());
     }
-    refusals.pop().unwrap_or_else(|| Error::Plan("no evaluator is left".into()))
+
+    /// Lets the rest of planning cost no more than a part of the cheapest of the plans.
+    fn bound(&self, survey: &Survey) {
+        self.plans.iter().filter_map(Plan::cost).for_each(|milliseconds| survey.effort.beside(milliseconds));
+    }
+
+    fn cheapest(self) -> std::result::Result<Plan, Vec<Error>> {
+        let Self { plans, mut refusals } = self;
+        refusals.sort_by_key(|(evaluator, _)| Evaluator::ALL.iter().position(|other| other == evaluator));
+        let mut costs: Vec<Cost> = plans.iter().flat_map(|plan| plan.costs.clone()).collect();
+        costs.sort_by(|a, b| a.milliseconds.total_cmp(&b.milliseconds));
+        let told = |(evaluator, error): &(Evaluator, Error)| Refusal { evaluator: *evaluator, reason: error.reason() };
+        let refused = refusals.iter().map(told).collect();
+        let cheapest = plans.into_iter().min_by(|a, b| a.costs[0].milliseconds.total_cmp(&b.costs[0].milliseconds));
+        match cheapest {
+            Some(plan) => Ok(Plan { costs, refused, ..plan }),
+            None => Err(refusals.into_iter().map(|(_, error)| error).collect()),
+        }
+    }
 }
 
 /// The period that was asked for, or that periodic bells bring with them.

@@ -2,9 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use super::Evaluator;
 use super::amplitudes::{Rgb, largest};
 use super::weigh::Weighed;
+use super::{Evaluator, Group};
+use crate::series::Bell;
 
 /// The error, for each unit of weight, that phases, tables and sums in f32 make at most: about twice the worst that
 /// tests/suite/rounding.rs has seen on Mesa's software renderer, for K from 1 to 20000 and N up to 220. A single bell
@@ -39,9 +40,9 @@ pub(super) fn of_modes(evaluator: Evaluator, strength: &Strength, degree: [u32; 
     const UNIT: f64 = 0.5 * f32::EPSILON as f64;
     let [tables, sums] = match evaluator {
         Evaluator::Direct => [0.0; 2],
-        Evaluator::Series => [3.0, 0.8],
-        Evaluator::Rows => [3.0, 0.8],
-        Evaluator::Grid => [6.0, 1.6],
+        Evaluator::Series => [0.5, 2.2],
+        Evaluator::Rows => [0.5, 2.7],
+        Evaluator::Grid => [3.0, 1.8],
     };
     let added = (2.0 + f64::from(degree[0]) + f64::from(degree[1])).sqrt();
     let one = |colour: usize| {
@@ -51,6 +52,21 @@ pub(super) fn of_modes(evaluator: Evaluator, strength: &Strength, degree: [u32; 
         turned + UNIT * (tables * (x + y) + sums * added * partial)
     };
     largest([0, 1, 2].map(one))
+}
+
+/// What f64 loses of the modes of some groups, with every ghost's waves by one rotation after the other; it matters where
+/// nearly all of the ghosts' light cancels.
+pub(super) fn of_doubles(groups: &[Group], degree: [u32; 2]) -> f64 {
+    // What a profile's transform is off by where it is read between nodes, and any other where it is looked up.
+    const READ: f64 = 3e-9;
+    const LOOKED_UP: f64 = 1e-11;
+    let turned = f64::EPSILON * (8.0 + 2.0 * f64::from(degree[0] + degree[1]));
+    let one = |group: &Group| match group.bell {
+        Bell::Profile(_) => group.weight * (turned + READ),
+        Bell::Paraboloid => group.weight * (turned + LOOKED_UP),
+        _ => group.weight * turned,
+    };
+    groups.iter().map(one).sum()
 }
 
 /// Of that, what comes of storing alone: half a unit in the last place of each result that one pass leaves to the next. For

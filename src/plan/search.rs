@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::floor::ABOVE;
 use super::{Plan, Request, plan};
 use crate::problem::Problem;
 use crate::{Error, Result};
@@ -14,9 +15,6 @@ const TIGHTEST: f64 = 1e-9;
 
 /// Where the search ends: tolerances that differ by less are as good as each other.
 const CLOSE: f64 = 1.02;
-
-/// A hair above the floor, so that its own rounding does not put the tolerance below it.
-const ABOVE: f64 = 1.0001;
 
 /// The plan of a request whose tolerance may lie below the floor of f32: then the one at the floor, which
 /// [`Plan::tolerance`] names.

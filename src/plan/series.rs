@@ -3,7 +3,8 @@
 use glam::DVec2;
 
 use super::amplitudes::{self, Amplitudes};
-use super::candidate::Survey;
+use super::candidate::{NEEDED, Survey};
+use super::decay::Decay;
 use super::lattice::{self, Marginals};
 use super::rounding::Strength;
 use super::{
@@ -34,12 +35,19 @@ impl Wide {
         if given || !amplitudes::worth_a_try(&survey.groups) {
             return None;
         }
+        survey.prepare().ok()?;
         let rounding = rounding::bound(&survey.weighed, Evaluator::Grid, rounding::SEEN_DEGREE);
         let usable = (request.tolerance - rounding).max(0.25 * request.tolerance);
         let period = request.period.unwrap_or_else(|| period::shortest(&survey.reaches, usable * share::PERIODISATION));
         let mut groups = survey.groups.clone();
-        let counts = terms::fewest(&mut groups, period, usable * BEYOND).ok()?;
-        let amplitudes = Amplitudes::new(problem.ghosts(), &groups, &counts, period, survey.weighed.scale)?;
+        let counts = terms::fewest(&mut groups, period, usable * BEYOND, &survey.effort).ok()?;
+        // By weights there may be no series at all.
+        let needed = rounding > (1.0 - NEEDED) * request.tolerance;
+        let afforded = survey.effort.affords(amplitudes::work(&groups, &counts));
+        if !afforded || !amplitudes::worth_looking(&groups, &counts, needed) {
+            return None;
+        }
+        let amplitudes = Amplitudes::new(problem.ghosts(), &groups, &counts, period, survey.weighed.scale);
         let beyond = terms::error(&groups, period, &counts);
         Some(Self { period, periodisation: period::error(&survey.reaches, period), groups, amplitudes, beyond })
     }
@@ -47,7 +55,9 @@ impl Wide {
     /// What f32 costs with all of the modes.
     pub fn rounding(&self, evaluator: Evaluator) -> f64 {
         let counts = self.amplitudes.modes().counts();
-        rounding::of_modes(evaluator, &self.amplitudes.strength(counts), [counts.len() as u32 - 1, counts[0] - 1])
+        let degree = [counts.len() as u32 - 1, counts[0] - 1];
+        let doubles = rounding::of_doubles(&self.groups, degree);
+        rounding::of_modes(evaluator, &self.amplitudes.strength(counts), degree) + doubles
     }
 
     /// Whether it leaves enough of what may be used up.
@@ -111,6 +121,7 @@ pub(super) fn plan_series(
     predicted: Prediction,
     usable: f64,
 ) -> Result<(Series, Prediction)> {
+    survey.prepare()?;
     let wide = wide.filter(|wide| wide.fits(request, usable));
     let period = match (request.period, wide) {
         (Some(period), _) => period,
@@ -158,6 +169,11 @@ impl Brief<'_> {
         let mut terms = self.terms(truncation)?;
         let degree = [terms.counts.len() as u32 - 1, terms.counts[0] - 1];
         let marginals = terms.marginals.take();
+        if marginals.is_none() {
+            self.survey
+                .effort
+                .spend(terms.groups.iter().map(|group| Decay::new(group, self.period).held_work(group)).sum())?;
+        }
         let marginals = marginals.unwrap_or_else(|| Marginals::by_weights(&terms.groups, degree, self.period));
         // Where the series is given there may be nothing left: then a lattice is to cost a little of what rounding does.
         let budget = interpolation * self.usable.max(if self.given() { 0.1 * self.predicted.single() } else { 0.0 });
@@ -175,7 +191,7 @@ impl Brief<'_> {
                 let mut groups = self.survey.groups.clone();
                 let counts = match degree {
                     Some(degree) => terms::rectangle(&mut groups, degree),
-                    None => terms::fewest(&mut groups, self.period, truncation)?,
+                    None => terms::fewest(&mut groups, self.period, truncation, &self.survey.effort)?,
                 };
                 Terms { groups, counts, modes: None, strength: None, marginals: None, truncation: f64::NAN }
             }
@@ -199,8 +215,8 @@ impl Brief<'_> {
         if let Some(strength) = strength {
             // What was planned with may have been a bound by weights.
             let degree = [counts.len() as u32 - 1, counts[0] - 1];
-            let known = rounding::of_modes(self.evaluator, &strength, degree) + self.survey.summed_in.1;
-            predicted = predicted.with_single(known.min(predicted.single()));
+            let known = rounding::of_modes(self.evaluator, &strength, degree) + rounding::of_doubles(&groups, degree);
+            predicted = predicted.with_single((known + self.survey.summed_in.1).min(predicted.single()));
         }
         let Request { tolerance, ref cost_model, .. } = *self.request;
         predicted.gathering = gather::choose(&mut groups, self.period, tolerance, &predicted, cost_model);

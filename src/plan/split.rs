@@ -42,7 +42,9 @@ pub(super) fn apart(problem: &Problem, survey: &Survey, request: &Request) -> Op
     let weighed = only(&survey.weighed, &left);
     let bounds = direct::bounds(problem, &only(&survey.weighed, &moved));
     let reaches = period::reaches(problem, &weighed);
-    Some(Survey { weighed, groups: left, reaches, summed: moved, summed_in: bounds.within(SUMMED * request.tolerance) })
+    let (effort, prepared) = (survey.effort.clone(), survey.prepared.clone());
+    let summed_in = bounds.within(SUMMED * request.tolerance);
+    Some(Survey { weighed, groups: left, reaches, summed: moved, summed_in, effort, prepared })
 }
 
 /// The weights of these groups' ghosts alone.
@@ -65,8 +67,14 @@ fn neediest(survey: &Survey, frame: Frame, request: &Request) -> Option<Vec<usiz
     let period = period::shortest(&survey.reaches, request.tolerance * share::PERIODISATION);
     let part = request.tolerance * share::TRUNCATION / groups.len() as f64;
     // What no series can have is infinitely needy.
-    let needs: Vec<Option<Vec<u32>>> =
-        groups.iter().map(|group| Decay::new(group, period).kept(part / group.weight).ok()).collect();
+    let mut needs: Vec<Option<Vec<u32>>> = Vec::with_capacity(groups.len());
+    survey.prepare().ok()?;
+    for group in groups {
+        let decay = Decay::new(group, period);
+        let kept = decay.kept(part / group.weight).ok();
+        survey.effort.spend(decay.work(kept.as_ref().map_or(0, |counts| counts.len() + counts[0] as usize))).ok()?;
+        needs.push(kept);
+    }
     let terms =
         |index: usize| needs[index].as_ref().map_or(u64::MAX, |counts| counts.iter().map(|&c| u64::from(c)).sum());
     let mut order: Vec<usize> = (0..groups.len()).collect();

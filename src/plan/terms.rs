@@ -3,8 +3,10 @@
 use std::sync::Arc;
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use super::decay::Decay;
+use super::effort::Effort;
 use super::gather::Transform;
 use super::slots::{Slots, by_chunks};
 use super::weigh::Weighed;
@@ -114,22 +116,31 @@ pub(super) fn rectangle(groups: &mut [Group], degree: [u32; 2]) -> Vec<u32> {
     vec![degree[1] + 1; degree[0] as usize + 1]
 }
 
+/// Groups that are looked at together, before anyone asks whether that is still worth it.
+const AT_ONCE: usize = 32;
+
 /// The modes of each group that are just enough for its part of the budget; what is kept is their union.
 ///
 /// # Errors
-/// [`Error::Plan`](crate::Error::Plan) where a bell is so narrow or so sharp that it would need too high a degree.
-pub(super) fn fewest(groups: &mut [Group], period: DVec2, budget: f64) -> Result<Vec<u32>> {
+/// [`Error::Plan`](crate::Error::Plan) where a bell is so narrow or so sharp that it would need too high a degree, or
+/// where looking for it costs too much.
+pub(super) fn fewest(groups: &mut [Group], period: DVec2, budget: f64, effort: &Effort) -> Result<Vec<u32>> {
     let part = budget / groups.len().max(1) as f64;
     let mut union = vec![1];
-    for group in groups {
-        let counts = Decay::new(group, period).kept(part / group.weight)?;
-        if union.len() < counts.len() {
-            union.resize(counts.len(), 1);
+    for groups in groups.chunks_mut(AT_ONCE) {
+        let kept = |group: &Group| Decay::new(group, period).kept(part / group.weight);
+        let kept: Vec<Result<Vec<u32>>> = groups.par_iter().map(kept).collect();
+        for (group, counts) in groups.iter_mut().zip(kept) {
+            let counts = counts?;
+            effort.spend(Decay::new(group, period).work(counts.len() + counts[0] as usize))?;
+            if union.len() < counts.len() {
+                union.resize(counts.len(), 1);
+            }
+            for (kept, count) in union.iter_mut().zip(&counts) {
+                *kept = (*kept).max(*count);
+            }
+            group.degree = [counts.len() as u32 - 1, counts[0] - 1];
         }
-        for (kept, count) in union.iter_mut().zip(&counts) {
-            *kept = (*kept).max(*count);
-        }
-        group.degree = [counts.len() as u32 - 1, counts[0] - 1];
     }
     Ok(union)
 }

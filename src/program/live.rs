@@ -94,7 +94,7 @@ fn many_ghosts() -> Look {
     let light = Light { position: DVec2::new(-0.5, 0.4), flux: [3.0, 2.7, 2.1], size: 0.01, muted: false };
     Look {
         lens: LookLens::Own((0..GHOSTS).map(ghost).collect()),
-        lights: LookLights::Listed(vec![light]),
+        lights: LookLights::Listed(vec![light].into()),
         ..Look::default()
     }
 }

@@ -6,6 +6,7 @@ use super::{convert, tiles};
 use crate::frame::{Frame, Window};
 use crate::gpu::evaluators::Evaluators;
 use crate::gpu::field::{FieldPass, Source};
+use crate::gpu::layout::{DirectGhost, DoubleGhost};
 use crate::gpu::range::RangePass;
 use crate::gpu::runner::Runner;
 use crate::gpu::spectrum::{Coefficients, Ghosts, Spectrum, SpectrumGroup};

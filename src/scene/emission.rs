@@ -29,7 +29,9 @@ impl Emission {
         let sum = self.weights[0] * r.max(0.0) + self.weights[1] * g.max(0.0) + self.weights[2] * b.max(0.0);
         let finite = r.is_finite() && g.is_finite() && b.is_finite();
         // No number, where weights of both signs made infinities of large channels, is not above 0.
-        if finite && sum > 0.0 { (sum * self.share(pixel)).min(f32::MAX) } else { 0.0 }
+        let given = if finite && sum > 0.0 { sum.min(f32::MAX) * self.share(pixel) } else { 0.0 };
+        // A device may take what is below the smallest normal number for nothing.
+        if given >= f32::MIN_POSITIVE { given } else { 0.0 }
     }
 
     /// The share of a pixel's colour that it gives, 0 to 1.
@@ -41,6 +43,13 @@ impl Emission {
             false => 1.0,
         }
     }
+}
+
+/// Whether a pixel that gives a luminance is light from a threshold on; black never is. `shared/emission.glsl` has the
+/// same, and nothing else decides.
+#[inline]
+pub fn is_light(luminance: f32, threshold: f32) -> bool {
+    luminance >= threshold && luminance > 0.0
 }
 
 /// Of opaque or premultiplied pixels.

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::emission::Emission;
+use super::emission::{Emission, is_light};
 
 /// A pixel with so many times the light of all that are no fireflies is a lamp in the dark.
 const ALL_THE_LIGHT: f64 = 100.0;
@@ -126,7 +126,7 @@ impl<'a> Lit<'a> {
 
     /// Fireflies of at least this luminance: columns and rows, in the order of the pixels.
     pub fn fireflies(&self, threshold: f32) -> Vec<(usize, usize)> {
-        let bright = |&&index: &&usize| self.emission.luminance(&self.pixels[index]) >= threshold;
+        let bright = |&&index: &&usize| is_light(self.emission.luminance(&self.pixels[index]), threshold);
         self.fireflies.iter().filter(bright).map(|index| (index % self.width, index / self.width)).collect()
     }
 

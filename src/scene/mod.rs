@@ -19,7 +19,7 @@ mod tables;
 pub mod threshold;
 mod write;
 
-pub use emission::Emission;
+pub use emission::{Emission, is_light};
 pub use file::{SceneFile, read_lens, read_lights, read_scene};
 pub use find::{FindOptions, Found, find};
 pub use lens::{Lens, ghosts};

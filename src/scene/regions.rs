@@ -10,7 +10,7 @@ use std::ops::Range;
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::emission::Emission;
+use super::emission::{Emission, is_light};
 use super::lit::Lit;
 
 /// Sums over pixels of light. Positions are columns and rows of the stored window, columns times the pixels' aspect, so that
@@ -118,7 +118,7 @@ impl Band {
 fn each_run(lit: &Lit<'_>, row: usize, threshold: f32, mut found: impl FnMut(usize, usize)) {
     let mut start = None;
     lit.each(row, |column, luminance| {
-        if luminance >= threshold && luminance > 0.0 {
+        if is_light(luminance, threshold) {
             start.get_or_insert(column);
         } else if let Some(start) = start.take() {
             found(start, column);

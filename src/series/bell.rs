@@ -164,6 +164,11 @@ pub trait Factor: Sync {
     /// of the same sizes.
     fn mean(&self, size: f64) -> f64;
 
+    /// What finding out how the coefficients of a size in periods fall off costs for each harmonic, about, in nanoseconds.
+    fn work(&self, _size: f64) -> f64 {
+        300.0
+    }
+
     /// About the harmonic beyond which no more than `error` is left.
     fn degree(&self, error: f64, size: f64) -> f64;
 }
@@ -181,6 +186,37 @@ pub trait Radial: Sync {
     /// An upper bound of how far the series is off at any point if it has all modes below `z`, on a lattice of modes
     /// whose cells have the half diagonal `cell`, in the same unit.
     fn beyond(&self, z: f64, cell: f64) -> f64;
+
+    /// A bound of |ĝ| at z and beyond.
+    fn envelope(&self, z: f64) -> f64;
+
+    /// The radius that it ends at.
+    fn end(&self) -> f64 {
+        1.0
+    }
+
+    /// A bound of ∫ m(√(a² + s²)) ds, s ≥ 0, where m is the envelope: by steps that grow with s, from each of which on the
+    /// envelope is what it is at its beginning. The envelope of no bell that ends falls more slowly than z^(−3/2).
+    fn envelope_across(&self, a: f64) -> f64 {
+        const RATIO: f64 = 1.2;
+        let mut s = 0.2 / self.end() + 0.2 * a;
+        let mut sum = s * self.envelope(a);
+        for _ in 0..64 {
+            sum += (RATIO - 1.0) * s * self.envelope(a.hypot(s));
+            s *= RATIO;
+        }
+        sum + 2.0 * s * self.envelope(s)
+    }
+
+    /// What the first of the bounds costs, about, in nanoseconds.
+    fn preparation(&self) -> f64 {
+        0.0
+    }
+
+    /// And each of them, or a transform.
+    fn work(&self) -> f64 {
+        30.0
+    }
 }
 
 impl dyn Radial + '_ {

@@ -32,7 +32,9 @@ impl Paraboloid {
 /// A bell's place, and what it is multiplied by.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spot {
+    /// Its centre, in the disc's unit.
     pub center: DVec2,
+    /// What it is multiplied by.
     pub weight: f64,
 }
 
@@ -54,7 +56,10 @@ pub enum Kappa {
     #[default]
     Right,
     /// 1 for m = 1, 2 for m > 1, as the notes print it. They name none for m = 0: here it is `zeroth`.
-    Printed { zeroth: f64 },
+    Printed {
+        /// κ_0.
+        zeroth: f64,
+    },
 }
 
 impl Kappa {
@@ -82,6 +87,7 @@ pub struct Term {
 pub struct FourierBessel {
     /// L > 0.
     pub radius: f64,
+    /// The terms, from k = 1 on.
     pub terms: Vec<Term>,
 }
 

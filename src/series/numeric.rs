@@ -35,6 +35,7 @@ pub struct Rule {
     pub period: f64,
     /// How many samples; at least 1, and more than twice the degree for the coefficients to mean anything.
     pub samples: u32,
+    /// Which of the notes' slips are made.
     pub slips: Slips,
 }
 
@@ -117,7 +118,9 @@ impl Sum {
 /// The coefficients (a_n, b_n) of a series and its period; the one of n = 0 is (mean, 0).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Coefficients {
+    /// The period T > 0.
     pub period: f64,
+    /// (a_n, b_n) from n = 0 on.
     pub terms: Vec<[f64; 2]>,
 }
 

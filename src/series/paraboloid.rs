@@ -4,9 +4,10 @@
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use super::bell::{Modes, Radial, Shape};
-use super::special::paraboloid_kernel;
+use super::special::{paraboloid_kernel, paraboloid_kernel_looked_up};
 use super::tails::copies;
 
 pub(super) struct Paraboloid;
@@ -72,7 +73,16 @@ impl Radial for Paraboloid {
         FRAC_PI_2 * paraboloid_kernel(z)
     }
 
+    fn transforms(&self, at: &[f64]) -> Vec<f64> {
+        at.par_iter().map(|&z| FRAC_PI_2 * paraboloid_kernel_looked_up(z)).collect()
+    }
+
     fn beyond(&self, z: f64, _cell: f64) -> f64 {
         cut_off(z)
+    }
+
+    /// √z |J2(z)| is below 0.86.
+    fn envelope(&self, z: f64) -> f64 {
+        FRAC_PI_2 * (8.0 * 0.86 * z.powf(-2.5)).min(1.0)
     }
 }

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::bell::{Modes, Radial, Shape};
 use super::paraboloid::cut_off;
-use super::special::{bessel_j, paraboloid_kernel, paraboloid_kernel_looked_up};
+use super::special::{bessel_j, paraboloid_kernel_looked_up};
 use super::tails::copies;
 
 /// Most rows of a table.
@@ -27,6 +27,9 @@ const FEW_ROWS: usize = 64;
 /// Steps of the table of what lies beyond a frequency: their width times the profile's radius, and how many there are.
 const STEP: f64 = 0.25;
 const STEPS: usize = 4000;
+
+/// What one paraboloid's kernel costs, about, in nanoseconds.
+const KERNEL: f64 = 20.0;
 
 /// Nodes for each 1 of z times the profile's radius, where ĝ is read between nodes instead of summed over all rows.
 const NODES: f64 = 8.0;
@@ -50,7 +53,7 @@ pub struct Profile {
     variance: f64,
     /// ∫ |ĝ|, and ∫ z |ĝ|, from each step on, with the largest |ĝ| from there on: only a series needs it, and it takes its
     /// time.
-    beyond: OnceLock<Vec<[f64; 2]>>,
+    beyond: OnceLock<Vec<[f64; 3]>>,
 }
 
 /// Everything else follows from the rows.
@@ -182,16 +185,16 @@ impl Profile {
         (PI * moment / self.volume).max(0.0)
     }
 
-    /// ∫ M dz and ∫ z M dz from each step of z on, where M is the largest |ĝ| from there on.
-    fn integrals(&self) -> Vec<[f64; 2]> {
+    /// ∫ M dz and ∫ z M dz from each step of z on, where M is the largest |ĝ| from there on; and M.
+    fn integrals(&self) -> Vec<[f64; 3]> {
         let width = STEP / self.radius();
         let sampled = self.sampled();
-        let mut beyond = vec![[0.0; 2]; STEPS + 1];
         let mut largest = sampled[STEPS];
+        let mut beyond = vec![[0.0, 0.0, largest]; STEPS + 1];
         for i in (0..STEPS).rev() {
             largest = largest.max(sampled[i]);
             let next = beyond[i + 1];
-            beyond[i] = [next[0] + width * largest, next[1] + width * (i as f64 + 1.0) * width * largest];
+            beyond[i] = [next[0] + width * largest, next[1] + width * (i as f64 + 1.0) * width * largest, largest];
         }
         beyond
     }
@@ -337,8 +340,8 @@ impl Shape for Profile {
 impl Radial for Profile {
     /// Twice by parts, with ∫ r² J1(qr) dr = r² J2(qr)/q: the step at the end as a disc, every kink as a paraboloid.
     fn transform(&self, z: f64) -> f64 {
-        let kernel = if self.looks_up() { paraboloid_kernel_looked_up } else { paraboloid_kernel };
-        let kinks: f64 = self.kernels.iter().map(|&[radius, weight]| weight * kernel(z * radius)).sum();
+        let kinks = self.kernels.iter().map(|&[radius, weight]| weight * paraboloid_kernel_looked_up(z * radius));
+        let kinks: f64 = kinks.sum();
         TAU * (self.stepped(z * self.radius()) + kinks)
     }
 
@@ -358,15 +361,41 @@ impl Radial for Profile {
         let width = STEP / self.radius();
         // A mode stands for its cell, in which |ĝ| may be as large as half a diagonal further in.
         let first = ((z - 2.0 * cell) / width).floor().max(0.0) as usize;
-        let Some([constant, linear]) = self.beyond.get_or_init(|| self.integrals()).get(first) else { return kinks };
+        let Some([constant, linear, _]) = self.beyond.get_or_init(|| self.integrals()).get(first) else { return kinks };
         let all = (linear + cell * constant) / TAU + self.cut_off(width * STEPS as f64);
         kinks.min(all)
+    }
+
+    fn envelope(&self, z: f64) -> f64 {
+        let step = (z * self.radius() / STEP) as usize;
+        match self.beyond.get_or_init(|| self.integrals()).get(step) {
+            Some(&[_, _, largest]) => largest,
+            None => {
+                let kinks = self.kernels.iter().map(|[radius, weight]| weight.abs() * (z * radius).powf(-2.5));
+                let disc = self.step().abs() * self.radius().powi(2) * (z * self.radius()).powf(-1.5);
+                TAU * (8.0 * 0.86 * kinks.sum::<f64>() + 0.83 * disc)
+            }
+        }
+    }
+
+    fn end(&self) -> f64 {
+        self.radius()
+    }
+
+    /// The table of what lies beyond each frequency, on two cores.
+    fn preparation(&self) -> f64 {
+        0.5 * KERNEL * STEPS as f64 * self.kernels.len() as f64
+    }
+
+    fn work(&self) -> f64 {
+        KERNEL * self.kernels.len() as f64
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::series::special::paraboloid_kernel;
 
     /// Of 300 rows that fall and tremble, so that kinks of both signs nearly cancel.
     fn trembling() -> Profile {

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::job::Watch;
+use crate::job::{Step, Watch};
 use crate::printable;
 
 const PATIENCE: Duration = Duration::from_secs(1);
@@ -63,7 +63,7 @@ impl Progress {
     }
 
     /// Says what goes on now.
-    pub fn step(&self, what: impl AsRef<str>) {
+    pub fn say(&self, what: impl AsRef<str>) {
         self.bar.set_style(style(STEP));
         self.bar.set_message(printable::line(what.as_ref()));
     }
@@ -86,8 +86,8 @@ impl Progress {
 }
 
 impl Watch for Progress {
-    fn step(&self, what: &'static str) {
-        self.step(what);
+    fn step(&self, step: Step) {
+        self.say(step.to_string());
     }
 
     fn measured(&self, pixels: usize) {

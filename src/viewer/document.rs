@@ -37,6 +37,7 @@ pub struct Document {
     pub gamut: Option<DMat3>,
     /// What was found in it, and by which rules.
     pub found: Found,
+    /// The rules that it was found by.
     pub searched: FindOptions,
     /// What is set; a change becomes a step of the history by [`Document::record`].
     pub look: Look,
@@ -301,6 +302,7 @@ fn shrink(photo: &Photo, side: u32) -> (Frame, Option<Vec<[f32; 4]>>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::look::LookLights;
 
     #[test]
     fn a_large_photo_is_shown_by_means_of_squares() {
@@ -327,6 +329,30 @@ mod tests {
         assert_eq!(document.place(DVec2::ZERO), DVec2::new(4.0, 2.0));
         let at = DVec2::new(-1.25, 7.5);
         assert!((document.place(document.position(at)) - at).length() < 1e-12);
+    }
+
+    #[test]
+    fn a_drag_of_the_strength_copies_no_list() {
+        let light = Light { position: DVec2::ZERO, flux: [1.0; 3], size: 0.0, muted: false };
+        let bell = crate::series::Bell::Gaussian;
+        let ghost = Ghost { bell, center: DVec2::ZERO, size: DVec2::ONE, radiance: [1.0; 3] };
+        let lights = LookLights::Listed(vec![light; 1000].into());
+        let look = Look { lights, ghosts: vec![ghost; 1000].into(), ..Look::default() };
+        let mut document = Document::new(Path::new("a.exr"), Photo::new(2, 1, vec![[0.5; 4]; 2]), look.clone());
+        for strength in [2.0, 3.0] {
+            document.look.strength = strength;
+            document.record(true);
+        }
+        for other in [&document.look, document.history.look(), &document.known_look()] {
+            let (LookLights::Listed(one), LookLights::Listed(other_lights)) = (&look.lights, &other.lights) else {
+                panic!("they are listed")
+            };
+            assert!(one.is(other_lights) && look.ghosts.is(&other.ghosts));
+            let (LookLens::Preset(one), LookLens::Preset(other)) = (&look.lens, &other.lens) else {
+                panic!("it is a preset")
+            };
+            assert!(Arc::ptr_eq(one, other));
+        }
     }
 
     #[test]

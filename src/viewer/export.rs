@@ -9,7 +9,8 @@ use super::loader::Wake;
 use super::model::Look;
 use super::task::{State, Task};
 use crate::gpu::{Backend, Device};
-use crate::job::{Computer, Job, Stages, Wanted, Watch};
+use crate::job::{Computer, Done, Found, Known, Stages, Step, Wanted, Watch};
+use crate::look::Search;
 use crate::photo::{self, Photo, WriteOptions};
 use crate::{Error, Result};
 
@@ -30,19 +31,19 @@ pub struct Export {
     task: Task<Result<Vec<String>>>,
 }
 
-/// What is done one after the other; how long each takes is not known beforehand.
-const STEPS: [&str; 5] = ["finding the lights", "planning", "computing the glare", "measuring the error", "writing"];
+/// What is done one after the other; the photo is read already.
+const STEPS: [Step; 5] = [Step::Finding, Step::Planning, Step::Computing, Step::Measuring, Step::Writing];
 
 /// How far it is, for both threads.
 struct Progress {
-    step: Mutex<&'static str>,
+    step: Mutex<Step>,
     cancelled: AtomicBool,
     wake: Wake,
 }
 
 impl Watch for Progress {
-    fn step(&self, what: &'static str) {
-        *self.step.lock().unwrap_or_else(PoisonError::into_inner) = what;
+    fn step(&self, step: Step) {
+        *self.step.lock().unwrap_or_else(PoisonError::into_inner) = step;
         (self.wake)();
     }
 
@@ -67,14 +68,15 @@ impl Export {
         let step = Mutex::new(STEPS[0]);
         let progress = Arc::new(Progress { step, cancelled: AtomicBool::new(false), wake: wake.clone() });
         let (photo, look) = (document.photo.clone(), document.look.clone());
+        let search = Search { options: document.searched, found: document.found.clone() };
         let (target, watch) = (path.to_owned(), progress.clone());
-        let work = move || write(&photo, &look, subject, &target, &watch);
+        let work = move || write(photo, &look, search, subject, &target, &watch);
         let task = Task::start("export", wake, work).map_err(|reason| Error::write(path, reason))?;
         Ok(Self { path: path.to_owned(), progress, task })
     }
 
     /// What goes on.
-    pub fn step(&self) -> &'static str {
+    pub fn step(&self) -> Step {
         *self.progress.step.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -100,10 +102,17 @@ impl Export {
 }
 
 /// All of it, on the thread of its own.
-fn write(photo: &Photo, look: &Look, subject: Subject, path: &Path, watch: &Progress) -> Result<Vec<String>> {
+fn write(
+    photo: Arc<Photo>,
+    look: &Look,
+    search: Search,
+    subject: Subject,
+    path: &Path,
+    watch: &Progress,
+) -> Result<Vec<String>> {
     let options = WriteOptions { overwrite: true, ..WriteOptions::default() };
-    photo::check_target(path, photo, &options)?;
-    let mut job = Job::new(look, photo.clone(), Stages::default())?;
+    photo::check_target(path, &photo, &options)?;
+    let found = Found::knowing(look, photo, Some(search), Stages::default())?;
     // One at a time: they would share the device's memory, and contexts of Mesa's software renderer that are at work on two
     // threads at once can end the process (`llvmpipe_flush_resource`, Mesa 22.3).
     static TURN: Mutex<()> = Mutex::new(());
@@ -111,19 +120,52 @@ fn write(photo: &Photo, look: &Look, subject: Subject, path: &Path, watch: &Prog
     if watch.cancelled() {
         return Err(Error::Cancelled);
     }
-    let mut computer = look.renders().then(|| Device::open(&Backend::ALL).map(Computer::new)).transpose()?;
-    let wanted = Wanted { glare: subject == Subject::Glare, ..Wanted::default() };
-    job.compute(computer.as_mut(), wanted, watch)?;
-    if watch.cancelled() {
-        return Err(Error::Cancelled);
+    let mut computer = look.renders().then(computer).transpose()?;
+    let wanted = Wanted { picture: subject == Subject::Picture, glare: subject == Subject::Glare, ..Wanted::default() };
+    let Done { picture, glare, mut warnings, .. } = found.compute(computer.as_mut(), wanted, watch)?;
+    watch.begin(Step::Writing)?;
+    if let Some(picture) = picture.or(glare) {
+        photo::write_unless(path, &picture, &options, || watch.cancelled())?;
+        warnings.extend(photo::lost(path, &picture, &options));
     }
-    watch.step(STEPS[4]);
-    let picture = match job.glare.take() {
-        Some(glare) => job.photo.companion(glare),
-        None => job.photo,
-    };
-    photo::write_unless(path, &picture, &options, || watch.cancelled())?;
-    let mut warnings = job.warnings;
-    warnings.extend(photo::lost(path, &picture, &options));
     Ok(warnings)
+}
+
+fn computer() -> Result<Computer> {
+    let device = Device::open(&Backend::ALL)?;
+    let known = Known::of(device.info());
+    Ok(Computer::new(device, known))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::look::LookLens;
+    use crate::scene::FindOptions;
+
+    /// A grey photo with a lamp.
+    fn photo() -> Photo {
+        let mut pixels = vec![[0.25, 0.25, 0.25, 1.0]; 32 * 16];
+        pixels[100..103].fill([50.0, 50.0, 50.0, 1.0]);
+        Photo::new(32, 16, pixels)
+    }
+
+    #[test]
+    fn a_job_starts_from_what_the_window_has_found() {
+        let look = Look { lens: LookLens::preset("zoom").unwrap(), ..Look::default() };
+        let document = Document::new(Path::new("a.exr"), photo(), look.clone());
+        // A search would give the lamp another flux than this.
+        let mut known = document.found.clone();
+        known.lights[0].flux = [7.0; 3];
+        let lights = |options: FindOptions| {
+            let search = Search { options, found: known.clone() };
+            Found::knowing(&look, document.photo.clone(), Some(search), Stages::default()).unwrap().scene.lights
+        };
+        assert_eq!(lights(document.searched), known.lights, "it is not searched again");
+        let other = FindOptions { merge: 0.5, ..document.searched };
+        assert_eq!(lights(other), document.found.lights, "by other rules it is");
+        // Nor is a photo copied until its picture is drawn.
+        let found = Found::new(&look, document.photo.clone(), Stages::default()).unwrap();
+        assert!(Arc::ptr_eq(&found.photo, &document.photo));
+    }
 }

@@ -3,8 +3,7 @@
 //! A script is a JSON list of steps. Time is the script's own: a frame is a fiftieth of a second later than the one
 //! before it, however long it took.
 
-use std::fs::{self, File};
-use std::io::BufWriter;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -20,6 +19,7 @@ use super::status::Status;
 use crate::gpu::{Device, Screen};
 use crate::look::Look;
 use crate::photo::ReadOptions;
+use crate::target::Target;
 use crate::{Error, Result, target};
 
 /// Seconds from a frame to the next.
@@ -63,14 +63,24 @@ pub enum Step {
     /// Releases it.
     Release,
     /// Presses at one place, moves to the other in as many frames, and releases.
-    Drag { from: Place, to: Place, frames: usize },
+    Drag {
+        /// Where it is pressed.
+        from: Place,
+        /// Where it is released.
+        to: Place,
+        /// In how many frames it gets there.
+        frames: usize,
+    },
     /// Turns the wheel, in points.
     Wheel(f32),
     /// Presses and releases a key by egui's name for it.
     Key {
+        /// egui's name for the key, like `B` or `ArrowLeft`.
         key: String,
+        /// With the control key held.
         #[serde(default)]
         ctrl: bool,
+        /// With the shift key held.
         #[serde(default)]
         shift: bool,
     },
@@ -351,15 +361,16 @@ impl Player {
     }
 
     fn screenshot(&self, path: &Path) -> Result<()> {
-        let failed = |reason: String| Error::write(path, reason);
-        let file = File::create(path).map_err(|error| failed(error.to_string()))?;
         let [width, height] = self.screen.size();
-        let mut encoder = png::Encoder::new(BufWriter::new(file), width, height);
-        encoder.set_color(png::ColorType::Rgba);
-        encoder.set_compression(png::Compression::Fast);
-        let mut writer = encoder.write_header().map_err(|error| failed(error.to_string()))?;
         let pixels = self.screen.read();
-        writer.write_image_data(bytemuck::cast_slice(&pixels)).map_err(|error| failed(error.to_string()))
+        Target::new(path, true)?.write(&|| false, |sink| {
+            let mut encoder = png::Encoder::new(sink, width, height);
+            encoder.set_color(png::ColorType::Rgba);
+            encoder.set_compression(png::Compression::Fast);
+            let mut writer = encoder.write_header()?;
+            writer.write_image_data(bytemuck::cast_slice(&pixels))?;
+            Ok(writer.finish()?)
+        })
     }
 }
 

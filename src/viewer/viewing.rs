@@ -29,7 +29,12 @@ pub enum Zoom {
     #[default]
     Fit,
     /// So many shown pixels to one of the screen, with this place of the picture in the middle.
-    Fixed { pitch: f64, center: DVec2 },
+    Fixed {
+        /// Shown pixels to one of the screen, > 0.
+        pitch: f64,
+        /// The place in the middle, in shown pixels from the top left.
+        center: DVec2,
+    },
 }
 
 /// How a picture is looked at; neither the glare nor what is saved depends on it.

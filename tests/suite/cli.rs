@@ -18,6 +18,7 @@ mod tables;
 mod targets;
 mod terminal;
 mod tradeoff;
+mod unchanged;
 mod view;
 
 use std::path::{Path, PathBuf};

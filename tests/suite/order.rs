@@ -134,6 +134,7 @@ fn the_same_scene_keeps_its_spectrum_and_another_does_not() {
         assert_eq!(spectra(renderer), 0, "nothing changed that the spectrum depends on");
 
         ghosts[3].radiance[2] *= 1.5;
+        let plan = plan_with(&ghosts, frame, 1e-3, Evaluator::Rows);
         renderer.field.set_scene(&plan).unwrap();
         assert_eq!(spectra(renderer), plan.groups().count(), "a ghost changed");
         renderer.field.forget_scene();
@@ -143,6 +144,7 @@ fn the_same_scene_keeps_its_spectrum_and_another_does_not() {
     // A ghost that changes a little changes the picture, too.
     let before = on_backend(Backend::Egl, |renderer| crate::support::glare(renderer, &plan, frame));
     ghosts[3].center.x += 0.01;
+    let plan = plan_with(&ghosts, frame, 1e-3, Evaluator::Rows);
     let after = on_backend(Backend::Egl, |renderer| crate::support::glare(renderer, &plan, frame));
     assert_ne!(bits(&before), bits(&after));
 }

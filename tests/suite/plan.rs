@@ -40,7 +40,7 @@ fn chosen(seed: u64) -> (Vec<Ghost>, Frame, f64) {
 }
 
 fn series_at(ghosts: &[Ghost], plan: &Plan, points: &[DVec2]) -> Vec<[f64; 3]> {
-    points.iter().map(|&at| series(ghosts, plan.period(), &plan.counts(), at)).collect()
+    points.iter().map(|&at| series(ghosts, plan.period(), plan.counts(), at)).collect()
 }
 
 /// The ghosts that a plan keeps.

@@ -12,6 +12,7 @@ use vglare::photo::Photo;
 use vglare::viewer::Document;
 use vglare::viewer::replay::{Player, Step};
 
+use crate::support::scenes::Chance;
 use crate::support::turn;
 
 /// Frames of one seed, and what memory may grow by after the first seeds, in bytes.
@@ -39,18 +40,7 @@ const KEYS: [Key; 16] = [
     Key::Minus,
 ];
 
-/// SplitMix64.
-struct Chance(u64);
-
 impl Chance {
-    fn below(&mut self, count: u64) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        (z ^ (z >> 31)) % count
-    }
-
     fn at(&mut self) -> egui::Pos2 {
         // Also off the screen.
         pos2(self.below(760) as f32 - 20.0, self.below(460) as f32 - 20.0)
@@ -110,7 +100,7 @@ fn check(player: &mut Player, seed: u64) {
 
 /// One seed's frames; how many there were.
 fn play(player: &mut Player, seed: u64) -> usize {
-    let mut chance = Chance(seed);
+    let mut chance = Chance::new(seed);
     player.app().add(Document::new(Path::new("fuzz.exr"), photo(), Look::default()));
     for frame in 0..FRAMES {
         let events = (0..=chance.below(3)).map(|_| chance.event()).collect();

@@ -3,19 +3,20 @@
 use super::Args;
 use super::outputs::{Paths, glare_options, picture_options};
 use crate::Result;
-use crate::job::{self, Computer, Stages, Wanted};
+use crate::gpu::Device;
+use crate::job::{Computer, Done, Found, Stages, Wanted};
 use crate::look::Look;
 use crate::photo::{self, Photo};
 use crate::terminal::progress::Progress;
 
-/// A photo, and what a run has come to know of it.
-pub struct Job<'a> {
+/// A photo, its files, and what a run has come to know of it: [`Found`], then [`Done`].
+pub struct Job<'a, Work> {
     pub args: &'a Args,
     pub paths: &'a Paths,
-    pub work: job::Job<'a>,
+    pub work: Work,
 }
 
-impl<'a> Job<'a> {
+impl<'a> Job<'a, Found<'a>> {
     /// Reads a photo and finds what glares in it.
     ///
     /// # Errors
@@ -29,50 +30,64 @@ impl<'a> Job<'a> {
     /// Finds what glares in a photo that has been read.
     ///
     /// # Errors
-    /// Those of [`Paths::check`] and [`job::Job::new`].
+    /// Those of [`Paths::check`] and [`Found::new`].
     pub fn found(args: &'a Args, paths: &'a Paths, look: &'a Look, photo: Photo, stages: Stages) -> Result<Self> {
         paths.check(args, &photo)?;
-        Ok(Self { args, paths, work: job::Job::new(look, photo, stages)? })
+        Ok(Self { args, paths, work: Found::new(look, photo, stages)? })
     }
 
     /// Lays the glare over the photo; without a computer there is none.
     ///
     /// # Errors
-    /// Those of [`job::Job::compute`].
-    pub fn compute(&mut self, computer: Option<&mut Computer>, progress: &Progress) -> Result<()> {
-        let (args, look) = (self.args, self.work.look);
+    /// Those of [`Found::compute`].
+    pub fn compute(self, computer: Option<&mut Computer>, progress: &Progress) -> Result<Job<'a, Done<'a>>> {
+        let Self { args, paths, work } = self;
         let wanted = Wanted {
             // A report alone tells of a picture that nobody keeps.
-            picture: self.paths.output.is_some() || self.paths.glare.is_none(),
-            glare: self.paths.glare.is_some(),
-            times: args.verbose || args.output_options.report.is_some() || look.accuracy.goal.budget().is_some(),
+            picture: paths.output.is_some() || paths.glare.is_none(),
+            glare: paths.glare.is_some(),
+            times: args.verbose || args.output_options.report.is_some() || work.look.accuracy.goal.budget().is_some(),
             verify: args.proof.verify,
-            calibrated: args.accuracy.calibrated(),
         };
-        self.work.compute(computer, wanted, progress)
+        Ok(Job { args, paths, work: work.compute(computer, wanted, progress)? })
     }
+}
 
+impl Job<'_, Done<'_>> {
     /// Writes what is asked for: the picture, the glare alone.
     ///
     /// # Errors
     /// Those of [`photo::write`].
-    pub fn write(&mut self) -> Result<()> {
-        let (args, paths, photo) = (self.args, self.paths, &self.work.photo);
-        let glare = self.work.glare.take();
-        if let Some(path) = &paths.output {
+    pub fn write(mut self) -> Result<Self> {
+        let (args, paths) = (self.args, self.paths);
+        let picture = paths.output.as_ref().zip(self.work.picture.as_ref());
+        if let Some((path, picture)) = picture {
             let options = picture_options(args);
-            let largest = photo::largest_value(path, photo, &options)?;
-            self.work.warnings.extend(photo::lost(path, photo, &options));
-            self.work.warnings.extend(self.work.beyond(largest));
+            let largest = photo::largest_value(path, picture, &options)?;
+            let lost = photo::lost(path, picture, &options);
+            let beyond = self.work.beyond(largest);
+            self.work.warnings.extend(lost.into_iter().chain(beyond));
         }
-        self.work.stages.time("write", || {
-            if let (Some(path), Some(pixels)) = (&paths.glare, glare) {
-                photo::write(path, &photo.companion(pixels), &glare_options(args, path))?;
+        let Done { picture, glare, stages, .. } = &mut self.work;
+        stages.time("write", || {
+            if let (Some(path), Some(glare)) = (&paths.glare, glare.take()) {
+                photo::write(path, &glare, &glare_options(args, path))?;
             }
-            match &paths.output {
-                Some(path) => photo::write(path, photo, &picture_options(args)),
-                None => Ok(()),
+            match (&paths.output, picture) {
+                (Some(path), Some(picture)) => photo::write(path, picture, &picture_options(args)),
+                _ => Ok(()),
             }
-        })
+        })?;
+        Ok(self)
     }
+}
+
+/// Opens what pictures are computed with.
+///
+/// # Errors
+/// Those of [`Device::open`].
+pub fn computer(args: &Args) -> Result<Computer> {
+    let device = Device::open(args.accuracy.backend.backends())?;
+    let known = args.accuracy.known(Some(device.info()));
+    Ok(Computer::new(device, known))
 }

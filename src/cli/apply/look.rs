@@ -33,12 +33,13 @@ pub struct LookArgs {
 impl LookArgs {
     /// What is given wins over what was set before.
     pub fn over(&self, look: Look) -> Look {
+        let Self { strength, size, tint, mix, normalize } = *self;
         Look {
-            strength: self.strength.unwrap_or(look.strength),
-            size: self.size.unwrap_or(look.size),
-            tint: self.tint.unwrap_or(look.tint),
-            mix: self.mix.unwrap_or(look.mix),
-            normalize: self.normalize.unwrap_or(look.normalize),
+            strength: strength.unwrap_or(look.strength),
+            size: size.unwrap_or(look.size),
+            tint: tint.unwrap_or(look.tint),
+            mix: mix.unwrap_or(look.mix),
+            normalize: normalize.unwrap_or(look.normalize),
             ..look
         }
     }

@@ -303,11 +303,11 @@ mod tests {
         let path = |name: &str| folder.path().join(name);
         std::fs::write(path("my lens.toml"), presets::find("anamorphic").unwrap().toml).unwrap();
         let lens = crate::scene::read_lens(&path("my lens.toml")).unwrap();
-        let filed = Look { lens: LookLens::File(path("my lens.toml"), lens), ..changed() };
+        let filed = Look { lens: LookLens::File(path("my lens.toml"), lens.into()), ..changed() };
         assert_eq!(again(&filed, None), filed);
         let light = Light { position: DVec2::new(2.0, 0.1), flux: [1.0, 0.0, 0.3], size: 0.0, muted: true };
-        let own = LookLens::Own(presets::named("eye").unwrap().ghosts);
-        let listed = Look { lights: LookLights::Listed(vec![light]), lens: own, ..changed() };
+        let own = LookLens::Own(presets::named("eye").unwrap().ghosts.into());
+        let listed = Look { lights: LookLights::Listed(vec![light].into()), lens: own, ..changed() };
         write_scene(&path("my look.toml"), &listed.to_scene(), false).unwrap();
         assert_eq!(again(&listed, Some(&path("my look.toml"))), listed);
     }

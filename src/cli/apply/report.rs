@@ -1,5 +1,6 @@
 //! The report: what was computed, how, how exactly and how fast.
 
+use glam::DVec2;
 use serde::Serialize;
 
 use super::job::Job;
@@ -8,9 +9,11 @@ use crate::choices::{Mix, Normalize};
 use crate::cli::lights::FirefliesJson;
 use crate::cli::plan::CostModelReport;
 use crate::gpu::{Info, PassTime};
-use crate::photo::BadKind;
+use crate::job::{Computed, Done};
+use crate::look::{Gathered, Look};
+use crate::photo::{BadKind, Facts};
 use crate::plan::Plan;
-use crate::scene::Light;
+use crate::scene::{Goal, Light};
 
 /// As JSON, one object.
 #[derive(Serialize)]
@@ -103,51 +106,67 @@ pub struct Stage {
 }
 
 impl<'a> Report<'a> {
-    pub fn new(job: &'a Job<'_>) -> Self {
+    pub fn new(job: &'a Job<'_, Done<'_>>) -> Self {
+        let Job { args: _, paths, work } = job;
+        // What a look has new is to be told, too.
+        let &Look {
+            description: _,
+            lens: _,
+            axis,
+            size,
+            tint,
+            lights: _,
+            ghosts: _,
+            find: _,
+            strength,
+            mix,
+            normalize,
+            accuracy,
+        } = work.look;
+        let computed = work.computed.as_ref();
         Self {
             vglare: env!("CARGO_PKG_VERSION"),
             input: photo_report(job),
-            output: job.paths.output.as_ref().map(|path| path.display().to_string()),
-            glare: job.paths.glare.as_ref().map(|path| path.display().to_string()),
-            scene: scene_report(&job.work),
-            strength: job.work.look.strength,
-            size: job.work.look.size,
-            tint: job.work.look.tint,
-            normalize: job.work.look.normalize,
-            mix: job.work.look.mix,
-            plan: job.work.planned.as_ref().map(|planned| &planned.plan),
-            cost: cost_report(job),
-            notes: job.work.planned.as_ref().map_or(&[], |planned| &planned.notes),
-            warnings: &job.work.warnings,
-            error: job.work.certificate.as_ref(),
-            passes: &job.work.passes,
-            milliseconds: job.work.stages.0.iter().map(|&(stage, wall_ms)| Stage { stage, wall_ms }).collect(),
-            renderer: job.work.info.as_deref(),
+            output: paths.output.as_ref().map(|path| path.display().to_string()),
+            glare: paths.glare.as_ref().map(|path| path.display().to_string()),
+            scene: scene_report(&work.scene, axis),
+            strength,
+            size,
+            tint,
+            normalize,
+            mix,
+            plan: computed.map(|computed| &computed.planning.plan),
+            cost: computed.map(|computed| cost_report(computed, accuracy.goal)),
+            notes: computed.map_or(&[], |computed| &computed.planning.notes),
+            warnings: &work.warnings,
+            error: computed.map(|computed| &computed.certificate),
+            passes: computed.map_or(&[], |computed| &computed.passes),
+            milliseconds: work.stages.0.iter().map(|&(stage, wall_ms)| Stage { stage, wall_ms }).collect(),
+            renderer: computed.map(|computed| &*computed.info),
         }
     }
 }
 
-fn cost_report<'a>(job: &'a Job<'_>) -> Option<CostReport<'a>> {
-    let planned = job.work.planned.as_ref()?;
-    Some(CostReport {
-        budget_ms: job.work.look.accuracy.goal.budget(),
-        predicted_ms: planned.plan.cost(),
-        measured_ms: job.work.measured_ms,
-        model: CostModelReport::new(planned),
-    })
+fn cost_report(computed: &Computed, goal: Goal) -> CostReport<'_> {
+    CostReport {
+        budget_ms: goal.budget(),
+        predicted_ms: computed.planning.plan.cost(),
+        measured_ms: computed.measured_ms,
+        model: CostModelReport::new(&computed.planning),
+    }
 }
 
-fn photo_report(job: &Job<'_>) -> PhotoReport {
-    let (photo, bad) = (&job.work.photo, &job.work.bad);
-    let window = photo.frame.window;
+fn photo_report(job: &Job<'_, Done<'_>>) -> PhotoReport {
+    let (Facts { frame, format, depth, picture }, bad) = (&job.work.facts, &job.work.bad);
+    let window = frame.window;
     PhotoReport {
         file: job.paths.input.display().to_string(),
-        format: photo.format_name(),
-        depth: photo.depth_name(),
-        layer: photo.source.picture.clone(),
-        picture: [photo.width(), photo.height()],
+        format,
+        depth,
+        layer: picture.clone(),
+        picture: [frame.width, frame.height],
         window: [window.x.into(), window.y.into(), window.width.into(), window.height.into()],
-        pixel_aspect: photo.frame.pixel_aspect,
+        pixel_aspect: frame.pixel_aspect,
         bad_pixels: BadReport {
             nan: bad.nan,
             infinite: bad.infinite,
@@ -166,12 +185,11 @@ pub fn kind_name(kind: BadKind) -> &'static str {
     }
 }
 
-fn scene_report<'a>(work: &'a crate::job::Job<'_>) -> SceneReport<'a> {
-    let scene = &work.scene;
+fn scene_report(scene: &Gathered, axis: DVec2) -> SceneReport<'_> {
     let found = scene.found.as_ref();
     SceneReport {
         lens: scene.lens.as_ref().map(|lens| lens.name.as_str()),
-        axis: work.look.axis.to_array(),
+        axis: axis.to_array(),
         threshold: found.map(|found| found.threshold),
         regions: found.map(|found| found.regions),
         lights_dropped: found.map(|found| found.dropped),

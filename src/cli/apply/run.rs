@@ -2,12 +2,11 @@
 
 use std::thread;
 
-use super::job::Job;
+use super::job::{self, Job};
 use super::outputs::{self, Paths, Work};
 use super::report::Report;
 use super::{Args, sequence, summary};
-use crate::gpu::Device;
-use crate::job::{Computer, Stages};
+use crate::job::{Computer, Stages, Step, Watch as _};
 use crate::look::Look;
 use crate::photo::{self, Photo};
 use crate::terminal::progress::Progress;
@@ -27,23 +26,22 @@ pub fn run(args: &Args) -> Result<()> {
 fn single(args: &Args, paths: &Paths) -> Result<()> {
     let progress = Progress::start(args.quiet);
     let look = args.look()?;
-    progress.step("reading the photo");
+    progress.step(Step::Reading);
     let mut stages = Stages::default();
     let (photo, mut computer) = stages.time("read", || read(args, paths, &look))?;
 
-    progress.step("finding the lights");
-    let mut job = Job::found(args, paths, &look, photo, stages)?;
-    job.compute(computer.as_mut(), &progress)?;
+    progress.step(Step::Finding);
+    let job = Job::found(args, paths, &look, photo, stages)?.compute(computer.as_mut(), &progress)?;
 
-    progress.step("writing");
-    job.write()?;
+    progress.step(Step::Writing);
+    let job = job.write()?;
     if let Some(path) = &args.output_options.report {
         target::write_json(path, &Report::new(&job), args.force)?;
     }
     drop(progress);
     summary::print(&job)?;
-    match &job.work.certificate {
-        Some(certificate) if args.proof.strict => certificate.check(),
+    match &job.work.computed {
+        Some(computed) if args.proof.strict => computed.certificate.check(),
         _ => Ok(()),
     }
 }
@@ -52,18 +50,18 @@ fn single(args: &Args, paths: &Paths) -> Result<()> {
 /// one after the other: a driver does not survive it that another takes what it was just told to be there.
 fn read(args: &Args, paths: &Paths, look: &Look) -> Result<(Photo, Option<Computer>)> {
     let read = || photo::read_with(&paths.input, &args.reading.options());
-    let open = || look.renders().then(|| Device::open(args.accuracy.backend.backends())).transpose();
+    let open = || look.renders().then(|| job::computer(args)).transpose();
     if limits::memory_is_limited() {
-        return Ok((read()?, open()?.map(Computer::new)));
+        return Ok((read()?, open()?));
     }
     thread::scope(|scope| {
         let reading = thread::Builder::new().name("read".into()).spawn_scoped(scope, read);
-        let device = open();
+        let computer = open();
         let photo = match reading {
             Ok(thread) => thread.join().unwrap_or_else(|panic| Err(panics::error(&*panic))),
             // Where the system gives no thread, this one has time now.
             Err(_) => read(),
         };
-        Ok((photo?, device?.map(Computer::new)))
+        Ok((photo?, computer?))
     })
 }

@@ -2,38 +2,40 @@
 
 use super::Args;
 use super::fault::Fault;
-use super::job::Job;
+use super::job::{self, Job};
 use super::outputs::{Paths, Sequence};
 use super::pipeline;
 use super::tally::Tally;
-use crate::gpu::Device;
-use crate::job::Computer;
+use crate::job::{Computer, Done, Found};
 use crate::terminal::progress::Progress;
 use crate::{Error, Result, panics};
 
 /// A photo on its way, or why it is not.
-struct Item<'a> {
+struct Item<'a, Work> {
     index: usize,
     paths: &'a Paths,
-    job: Result<Job<'a>>,
+    job: Result<Job<'a, Work>>,
 }
 
-impl<'a> Item<'a> {
+impl<'a, Work> Item<'a, Work> {
     /// A photo that is worked on in a step; a panic there is its error, and no one else's.
-    fn through(self, step: &str, work: impl FnOnce(&mut Job<'a>) -> Result<()>) -> Self {
+    fn through<Next>(self, step: &str, work: impl FnOnce(Job<'a, Work>) -> Result<Job<'a, Next>>) -> Item<'a, Next> {
         let Self { index, paths, job } = self;
-        let job = job.and_then(|mut job| {
+        let job = job.and_then(|job| {
             panics::caught(|| {
                 Fault::strike(job.args.sequence.panic_in.as_ref(), step, index);
-                work(&mut job)
-            })?;
-            Ok(job)
+                work(job)
+            })
         });
-        Self { index, paths, job }
+        Item { index, paths, job }
     }
 }
 
-fn compute<'a>(item: Item<'a>, mut computer: Option<&mut Computer>, progress: &Progress) -> Item<'a> {
+fn compute<'a>(
+    item: Item<'a, Found<'a>>,
+    mut computer: Option<&mut Computer>,
+    progress: &Progress,
+) -> Item<'a, Done<'a>> {
     let item = item.through("compute", |job| job.compute(computer.as_deref_mut(), progress));
     if let (Err(Error::Internal { .. }), Some(computer)) = (&item.job, computer) {
         // What it left half done must not get into the next.
@@ -64,12 +66,9 @@ pub fn run(args: &Args, sequence: &Sequence) -> Result<()> {
         });
         Item { index, paths, job }
     };
-    let open = || {
-        let device = look.renders().then(|| Device::open(args.accuracy.backend.backends()));
-        Ok(device.transpose()?.map(Computer::new))
-    };
+    let open = || look.renders().then(|| job::computer(args)).transpose();
     let compute = |computer: &mut Option<Computer>, item| compute(item, computer.as_mut(), &hidden);
-    let write = |item: Item<'_>| {
+    let write = |item: Item<'_, Done<'_>>| {
         let item = item.through("write", Job::write);
         tally.add(item.paths, item.job)
     };

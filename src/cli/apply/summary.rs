@@ -8,13 +8,14 @@ use crate::Result;
 use crate::certificate::Verify;
 use crate::cli::found;
 use crate::cli::plan::text;
+use crate::job::{Computed, Done};
 use crate::look::{Gathered, Look, LookLights};
-use crate::plan::Plan;
+use crate::photo::Facts;
 use crate::scene::Found;
 use crate::terminal::{stderr, stdout};
 
 /// Warnings to standard error; unless quiet, a short summary to standard output.
-pub fn print(job: &Job<'_>) -> Result<()> {
+pub fn print(job: &Job<'_, Done<'_>>) -> Result<()> {
     stderr::warn(&job.work.warnings);
     if job.args.quiet {
         return Ok(());
@@ -22,9 +23,9 @@ pub fn print(job: &Job<'_>) -> Result<()> {
     stdout::print(|out| {
         about_photo(out, job)?;
         about_scene(out, &job.work.scene, job.work.look)?;
-        if let Some(planned) = &job.work.planned {
-            about_plan(out, job, &planned.plan)?;
-            planned.notes.iter().try_for_each(|note| writeln!(out, "note     {note}"))?;
+        if let Some(computed) = &job.work.computed {
+            about_plan(out, job, computed)?;
+            computed.planning.notes.iter().try_for_each(|note| writeln!(out, "note     {note}"))?;
         }
         if job.args.verbose {
             about_times(out, job)?;
@@ -38,15 +39,14 @@ pub fn print(job: &Job<'_>) -> Result<()> {
     })
 }
 
-fn about_photo(out: &mut dyn Write, job: &Job<'_>) -> io::Result<()> {
-    let (photo, bad) = (&job.work.photo, &job.work.bad);
-    let (width, height) = (photo.width(), photo.height());
-    let (format, depth) = (photo.format_name(), photo.depth_name());
+fn about_photo(out: &mut dyn Write, job: &Job<'_, Done<'_>>) -> io::Result<()> {
+    let (Facts { frame, format, depth, picture }, bad) = (&job.work.facts, &job.work.bad);
+    let (width, height) = (frame.width, frame.height);
     write!(out, "photo    {}: {width} x {height}, {format}, {depth}", job.paths.input.display())?;
-    if photo.frame.pixel_aspect != 1.0 {
-        write!(out, ", pixels {:.4} times as wide as high", photo.frame.pixel_aspect)?;
+    if frame.pixel_aspect != 1.0 {
+        write!(out, ", pixels {:.4} times as wide as high", frame.pixel_aspect)?;
     }
-    match &photo.source.picture {
+    match picture {
         Some(picture) => writeln!(out, "; its picture is {picture}")?,
         None => writeln!(out)?,
     }
@@ -104,32 +104,29 @@ fn about_found(out: &mut dyn Write, found: &Found, look: &Look) -> io::Result<()
     }
 }
 
-fn about_plan(out: &mut dyn Write, job: &Job<'_>, plan: &Plan) -> io::Result<()> {
+fn about_plan(out: &mut dyn Write, job: &Job<'_, Done<'_>>, computed: &Computed) -> io::Result<()> {
+    let Computed { info, planning, certificate: error, measured_ms, passes: _ } = computed;
+    let plan = &planning.plan;
     text::plan(out, plan)?;
     if let Some(budget) = job.work.look.accuracy.goal.budget() {
         write!(out, "budget   {budget} ms bought a tolerance of {:.1e}", plan.tolerance)?;
-        let (predicted, measured) = (plan.cost().unwrap_or(f64::NAN), job.work.measured_ms.unwrap_or(f64::NAN));
+        let (predicted, measured) = (plan.cost().unwrap_or(f64::NAN), measured_ms.unwrap_or(f64::NAN));
         writeln!(out, ": {predicted:.1} ms predicted, {measured:.1} ms measured")?;
     }
-    if let Some(error) = &job.work.certificate {
-        let all = if error.verify == Verify::Full { "all " } else { "" };
-        writeln!(
-            out,
-            "error    {:.1e} measured at {all}{} pixels, {:.1e} predicted, {:.1e} asked",
-            error.measured, error.pixels, error.predicted, error.asked
-        )?;
-    }
-    match &job.work.info {
-        Some(info) => writeln!(out, "renderer {}, {}", info.renderer, info.route),
-        None => Ok(()),
-    }
+    let all = if error.verify == Verify::Full { "all " } else { "" };
+    writeln!(
+        out,
+        "error    {:.1e} measured at {all}{} pixels, {:.1e} predicted, {:.1e} asked",
+        error.measured, error.pixels, error.predicted, error.asked
+    )?;
+    writeln!(out, "renderer {}, {}", info.renderer, info.route)
 }
 
-fn about_times(out: &mut dyn Write, job: &Job<'_>) -> io::Result<()> {
-    if let Some(planned) = &job.work.planned {
-        text::details(out, planned)?;
+fn about_times(out: &mut dyn Write, job: &Job<'_, Done<'_>>) -> io::Result<()> {
+    if let Some(computed) = &job.work.computed {
+        text::details(out, &computed.planning)?;
     }
-    for pass in &job.work.passes {
+    for pass in job.work.computed.iter().flat_map(|computed| &computed.passes) {
         write!(out, "pass     {:<13}{:>9.2} ms", pass.pass, pass.wall_ms)?;
         match pass.gpu_ms {
             Some(gpu) => writeln!(out, ", {gpu:.2} ms by the device's timer")?,

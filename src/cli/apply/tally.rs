@@ -14,6 +14,7 @@ use super::outputs::{Paths, Sequence};
 use super::report::Report;
 use super::spool::Spool;
 use crate::gpu::Info;
+use crate::job::{Computed, Done};
 use crate::terminal::progress::Progress;
 use crate::terminal::{stderr, stdout};
 use crate::{Error, Result, panics, target};
@@ -103,7 +104,7 @@ impl<'a> Tally<'a> {
     }
 
     /// Counts a photo that was written, or why it was not; says whether to go on.
-    pub fn add(&mut self, paths: &Paths, done: Result<Job<'_>>) -> ControlFlow<()> {
+    pub fn add(&mut self, paths: &Paths, done: Result<Job<'_, Done<'_>>>) -> ControlFlow<()> {
         let result = done.and_then(|job| panics::caught(|| self.written(&job)));
         let total = self.sequence.frames.len();
         if let Err(error) = result {
@@ -122,11 +123,11 @@ impl<'a> Tally<'a> {
         ControlFlow::Continue(())
     }
 
-    fn written(&mut self, job: &Job<'_>) -> Result<()> {
+    fn written(&mut self, job: &Job<'_, Done<'_>>) -> Result<()> {
         self.written += 1;
         self.bad += usize::from(job.work.bad.first.is_some());
-        self.info = self.info.take().or(job.work.info.clone());
-        if let Some(error) = &job.work.certificate {
+        if let Some(Computed { info, certificate: error, .. }) = &job.work.computed {
+            self.info.get_or_insert_with(|| info.clone());
             self.measured += 1;
             self.missed += usize::from(error.check().is_err());
             // Not a number is worse than any, in this order.
@@ -225,19 +226,19 @@ impl<'a> Tally<'a> {
 }
 
 /// A photo that was written, in a line.
-fn line(out: &mut dyn Write, job: &Job<'_>) -> io::Result<()> {
-    let (photo, scene) = (&job.work.photo, &job.work.scene);
+fn line(out: &mut dyn Write, job: &Job<'_, Done<'_>>) -> io::Result<()> {
+    let (frame, scene) = (job.work.facts.frame, &job.work.scene);
     let path = job.paths.pictures().next().unwrap_or(&job.paths.input);
-    write!(out, "photo    {}: {} x {}, ", path.display(), photo.width(), photo.height())?;
+    write!(out, "photo    {}: {} x {}, ", path.display(), frame.width, frame.height)?;
     if let Some(found) = &scene.found {
         write!(out, "{} lights at {:.4} and above, ", scene.lights.len(), found.threshold)?;
     }
     write!(out, "{} ghosts, ", scene.ghosts.len())?;
-    if let (Some(planned), Some(error)) = (&job.work.planned, &job.work.certificate) {
-        write!(out, "{}, error {:.1e}, ", planned.plan.evaluator(), error.measured)?;
+    if let Some(Computed { planning, certificate, .. }) = &job.work.computed {
+        write!(out, "{}, error {:.1e}, ", planning.plan.evaluator(), certificate.measured)?;
     }
     let total: f64 = job.work.stages.0.iter().map(|(_, ms)| ms).sum();
     writeln!(out, "{:.2} s", total * 1e-3)?;
-    let notes = job.work.planned.iter().flat_map(|planned| &planned.notes);
+    let notes = job.work.computed.iter().flat_map(|computed| &computed.planning.notes);
     notes.into_iter().try_for_each(|note| writeln!(out, "note     {note}"))
 }

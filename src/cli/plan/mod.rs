@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::found;
 use crate::frame::Frame;
 use crate::gpu::{Device, Info};
-use crate::job::{self, Planned};
+use crate::job::{self, Planning};
 use crate::look::{Gathered, Look};
 use crate::options::AccuracyArgs;
 use crate::options::FindArgs;
@@ -97,7 +97,7 @@ struct Told<'a> {
     frame: Frame,
     look: &'a Look,
     scene: &'a Gathered,
-    planned: &'a Planned,
+    planned: &'a Planning,
     info: Option<&'a Info>,
     budget: Option<f64>,
 }
@@ -195,7 +195,8 @@ pub struct CostModelReport<'a> {
 }
 
 impl<'a> CostModelReport<'a> {
-    pub fn new(planned: &'a Planned) -> Self {
+    /// That of a plan.
+    pub fn new(planned: &'a Planning) -> Self {
         let file = planned.calibration.as_deref();
         let source = if file.is_some() { "calibrated" } else { "built-in" };
         Self { source, file, nanoseconds: &planned.model }

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::job::Planned;
+use crate::job::Planning;
 use crate::plan::{Evaluator, Group, Plan, Source, Transform};
 use crate::series::moments::Cells;
 
@@ -29,7 +29,7 @@ pub fn plan(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
 }
 
 /// All that there is to say of it: groups, lattice, the bounds of the error line by line, and every candidate.
-pub fn details(out: &mut dyn Write, planned: &Planned) -> io::Result<()> {
+pub fn details(out: &mut dyn Write, planned: &Planning) -> io::Result<()> {
     let plan = &planned.plan;
     groups(out, plan)?;
     if let Some(lattice) = &plan.lattice() {

@@ -54,14 +54,18 @@ impl Platform for OnDevice {
 }
 
 fn open_device(device: &Device, index: usize) -> glutin::error::Result<(glow::Context, Box<dyn Platform>)> {
+    // SAFETY: no native display is given that would have to be one.
     let display = unsafe { Display::with_device(device, None) }?;
     let template = ConfigTemplateBuilder::new().with_surface_type(ConfigSurfaceTypes::empty()).build();
+    // SAFETY: the template names no native window that would have to be one.
     let config = unsafe { display.find_configs(template) }?.next().ok_or(glutin::error::ErrorKind::BadConfig)?;
     let attributes = ContextAttributesBuilder::new()
         .with_context_api(ContextApi::OpenGl(Some(Version::new(REQUIRED.0, REQUIRED.1))))
         .with_profile(GlProfile::Core)
         .build(None);
+    // SAFETY: the configuration is of this display, and no other context shares with it.
     let context = unsafe { display.create_context(&config, &attributes) }?.make_current_surfaceless()?;
+    // SAFETY: the context is current, and its own display names its functions.
     let gl = unsafe { glow::Context::from_loader_function_cstr(|name| display.get_proc_address(name)) };
     Ok((gl, Box::new(OnDevice { _context: context, _display: display, index })))
 }
@@ -81,6 +85,7 @@ impl Platform for Surfaceless {
 
 impl Drop for Surfaceless {
     fn drop(&mut self) {
+        // SAFETY: display and context are those that EGL gave, and the context is not used from here on.
         unsafe {
             // Another one may be current by now.
             if self.egl.GetCurrentContext() == self.context {
@@ -95,23 +100,29 @@ impl Drop for Surfaceless {
 fn open_surfaceless() -> Result<(glow::Context, Box<dyn Platform>), String> {
     let library = load(LIBRARY)?;
     let egl = egl::Egl::load_with(|name| match CString::new(name) {
+        // SAFETY: the symbol is only read as an address; EGL's own table knows its type.
         Ok(name) => unsafe { library.get::<*const c_void>(name.as_bytes_with_nul()) }.map_or(ptr::null(), |f| *f),
         Err(_) => ptr::null(),
     });
     if !egl.GetPlatformDisplay.is_loaded() {
         return Err("EGL is older than 1.5".into());
     }
+    // SAFETY: the platform takes no native display and no attributes, which null says; EGL refuses one that it has not.
     let display = unsafe { egl.GetPlatformDisplay(PLATFORM_SURFACELESS, ptr::null_mut(), ptr::null()) };
+    // SAFETY: the display is one that EGL gave, and null asks for no version.
     if display == egl::NO_DISPLAY || unsafe { egl.Initialize(display, ptr::null_mut(), ptr::null_mut()) } == 0 {
         return Err("the platform is not supported".into());
     }
     let context = create_context(&egl, display)?;
     let platform = Surfaceless { egl, display, context, _library: library };
+    // SAFETY: display and context are those that EGL gave; no surface is allowed, or refused.
     let made = unsafe { platform.egl.MakeCurrent(display, egl::NO_SURFACE, egl::NO_SURFACE, context) };
     if made == 0 {
         return Err("the context cannot be made current".into());
     }
+    // SAFETY: the name ends in NUL.
     let loader = |name: &CStr| unsafe { platform.egl.GetProcAddress(name.as_ptr()) }.cast::<c_void>().cast_const();
+    // SAFETY: the context is current, and its own EGL names its functions.
     let gl = unsafe { glow::Context::from_loader_function_cstr(loader) };
     Ok((gl, Box::new(platform)))
 }
@@ -119,7 +130,9 @@ fn open_surfaceless() -> Result<(glow::Context, Box<dyn Platform>), String> {
 fn create_context(egl: &egl::Egl, display: EGLDisplay) -> Result<EGLContext, String> {
     let wanted = [egl::SURFACE_TYPE, 0, egl::RENDERABLE_TYPE, egl::OPENGL_BIT, egl::NONE].map(|word| word as EGLint);
     let (mut config, mut found) = (ptr::null(), 0);
+    // SAFETY: the list ends in NONE, and there is room for one configuration and for their number.
     let chosen = unsafe { egl.ChooseConfig(display, wanted.as_ptr(), &mut config, 1, &mut found) };
+    // SAFETY: it takes a number.
     if chosen == 0 || found == 0 || unsafe { egl.BindAPI(egl::OPENGL_API) } == 0 {
         return Err("no configuration for OpenGL".into());
     }
@@ -131,6 +144,7 @@ fn create_context(egl: &egl::Egl, display: EGLDisplay) -> Result<EGLContext, Str
     ];
     let attributes: Vec<EGLint> =
         attributes.iter().flat_map(|&(key, value)| [key as EGLint, value as EGLint]).collect();
+    // SAFETY: display and configuration are those that EGL gave, and the list ends in NONE.
     let context = unsafe { egl.CreateContext(display, config, egl::NO_CONTEXT, attributes.as_ptr()) };
     if context == egl::NO_CONTEXT { Err("no core context of OpenGL 4.3".into()) } else { Ok(context) }
 }

@@ -14,6 +14,7 @@ pub fn be_sparing() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     if limits::memory_is_limited() {
         // It sets a number; it fails for an unknown parameter only.
+        // SAFETY: it takes two numbers and sets one of them.
         unsafe { libc::mallopt(libc::M_ARENA_MAX, 1) };
     }
 }

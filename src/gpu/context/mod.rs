@@ -1,6 +1,8 @@
-//! OpenGL 4.3 with and without a window: GLX or EGL on a display, EGL where there is a driver, OSMesa where there is none.
+//! OpenGL 4.3 with and without a window: GLX or EGL on a display, EGL where there is a driver, OSMesa where there is none,
+//! or the context of a program that has one.
 
 mod egl;
+mod host;
 mod memory;
 mod osmesa;
 #[cfg(feature = "window")]
@@ -34,6 +36,9 @@ pub enum Backend {
     /// GLX or EGL on a display, drawing into a window; only [`Display`](window::Display) opens it.
     #[cfg_attr(feature = "terminal", value(skip))]
     Window,
+    /// A context that the program brought itself; only [`Device::adopt`] takes it.
+    #[cfg_attr(feature = "terminal", value(skip))]
+    Host,
 }
 
 impl Backend {
@@ -46,6 +51,7 @@ impl Backend {
             Self::Egl => "libegl1 libgl1-mesa-dri",
             Self::OsMesa => "libosmesa6",
             Self::Window => "libgl1 libegl1 libgl1-mesa-dri libx11-6 libx11-xcb1 libxcursor1 libxi6 libxkbcommon-x11-0",
+            Self::Host => "",
         }
     }
 }
@@ -56,7 +62,7 @@ impl Backend {
         match self {
             Self::Egl => egl::LIBRARY,
             Self::OsMesa => osmesa::NAMES[0],
-            Self::Window => "libGL or libEGL",
+            Self::Window | Self::Host => "libGL or libEGL",
         }
     }
 }
@@ -72,6 +78,7 @@ fn trusting<T>(library: &str, open: impl FnOnce() -> Result<T, String>) -> Resul
 
 /// Loads a library.
 fn load(name: &str) -> Result<Library, String> {
+    // SAFETY: it is trusted to be what its name says, as any driver is; its initialisers are its own.
     unsafe { Library::new(name) }.map_err(|error| {
         // One that is there may be damaged, of another machine, or lack others.
         let reason = std::error::Error::source(&error).map_or_else(|| error.to_string(), ToString::to_string);
@@ -86,6 +93,7 @@ impl fmt::Display for Backend {
             Self::Egl => "egl",
             Self::OsMesa => "osmesa",
             Self::Window => "window",
+            Self::Host => "host",
         })
     }
 }
@@ -101,9 +109,10 @@ trait Platform {
     }
 }
 
-/// A current GL context on this thread. GL objects hold it by [`Rc`], so it outlives them all.
+/// A current GL context on this thread, opened here or adopted from a host. GL objects hold it by [`Rc`], so it outlives
+/// them all.
 pub struct Device {
-    /// By [`Arc`] because egui's painter shares it.
+    /// By [`Arc`] because egui's painter shares it, or it is a host's.
     gl: Arc<glow::Context>,
     info: Info,
     platform: Box<dyn Platform>,
@@ -189,21 +198,22 @@ impl Device {
                 Backend::Egl => egl::open()?,
                 Backend::OsMesa => osmesa::open()?,
                 Backend::Window => return Err("is not opened without a window".into()),
+                Backend::Host => return Err("is the program's own, to be adopted".into()),
             };
-            Self::new(gl, backend, platform)
+            Self::new(shared(gl), backend, platform)
         })
     }
 
     /// The device of a context that is current.
-    fn new(gl: glow::Context, backend: Backend, platform: Box<dyn Platform>) -> Result<Self, String> {
+    fn new(gl: Arc<glow::Context>, backend: Backend, platform: Box<dyn Platform>) -> Result<Self, String> {
         let version = gl.version();
-        if (version.major, version.minor) < (u32::from(REQUIRED.0), u32::from(REQUIRED.1)) {
-            return Err(format!("gives OpenGL {}.{} and 4.3 is needed", version.major, version.minor));
+        let below = (version.major, version.minor) < (u32::from(REQUIRED.0), u32::from(REQUIRED.1));
+        if below || version.is_embedded {
+            let kind = if version.is_embedded { "OpenGL ES" } else { "OpenGL" };
+            return Err(format!("gives {kind} {}.{} and OpenGL 4.3 is needed", version.major, version.minor));
         }
         let info = describe(&gl, backend, platform.route());
-        // egui's painter asks for an `Arc`; nothing leaves this thread.
-        #[allow(clippy::arc_with_non_send_sync)]
-        Ok(Self { gl: Arc::new(gl), info, platform, lost: Cell::default(), abandoned: Cell::default() })
+        Ok(Self { gl, info, platform, lost: Cell::default(), abandoned: Cell::default() })
     }
 
     /// The GL functions.
@@ -245,6 +255,7 @@ impl Device {
     /// # Errors
     /// [`Error::Gl`], which names `work`.
     pub fn check(&self, work: &str) -> Result<()> {
+        // SAFETY: the device keeps its context current on this thread.
         let name = match unsafe { self.gl.get_error() } {
             glow::NO_ERROR => return Ok(()),
             glow::OUT_OF_MEMORY => "out of memory".to_owned(),
@@ -257,8 +268,15 @@ impl Device {
 
     /// Waits until the GL has done all that it was asked to.
     pub fn finish(&self) {
+        // SAFETY: the device keeps its context current on this thread.
         unsafe { self.gl.finish() }
     }
+}
+
+/// egui's painter and hosts share the functions by an `Arc`; nothing leaves this thread.
+#[allow(clippy::arc_with_non_send_sync)]
+fn shared(gl: glow::Context) -> Arc<glow::Context> {
+    Arc::new(gl)
 }
 
 impl fmt::Debug for Device {
@@ -268,10 +286,14 @@ impl fmt::Debug for Device {
 }
 
 fn describe(gl: &glow::Context, backend: Backend, route: String) -> Info {
+    // SAFETY: the context is current, and the name is one of OpenGL 4.3.
     let text = |name| unsafe { gl.get_parameter_string(name) };
+    // SAFETY: the context is current, and the name is one of OpenGL 4.3.
     let number = |name| unsafe { gl.get_parameter_i32(name) }.max(0) as u32;
+    // SAFETY: the context is current, and the name is one of OpenGL 4.3.
     let indexed = |name, index| unsafe { gl.get_parameter_indexed_i32(name, index) }.max(0) as u32;
     let mut viewport = [0; 2];
+    // SAFETY: the context is current, and the parameter has two numbers.
     unsafe { gl.get_parameter_i32_slice(glow::MAX_VIEWPORT_DIMS, &mut viewport) };
     let renderer = text(glow::RENDERER);
     let software = ["llvmpipe", "softpipe", "swrast", "SwiftShader"].iter().any(|name| renderer.contains(name));
@@ -285,6 +307,7 @@ fn describe(gl: &glow::Context, backend: Backend, route: String) -> Info {
         limits: Limits {
             texture_size: number(glow::MAX_TEXTURE_SIZE),
             viewport: viewport.map(|side| side.max(0) as u32),
+            // SAFETY: the context is current, and the name is one of OpenGL 4.3.
             storage_block: unsafe { gl.get_parameter_i64(glow::MAX_SHADER_STORAGE_BLOCK_SIZE) }.max(0) as u64,
             uniform_block: number(glow::MAX_UNIFORM_BLOCK_SIZE),
             storage_bindings: number(glow::MAX_SHADER_STORAGE_BUFFER_BINDINGS),

@@ -40,6 +40,7 @@ impl Platform for OsMesa {
 
 impl Drop for OsMesa {
     fn drop(&mut self) {
+        // SAFETY: OSMesa gave the context, the library is loaded still, and nothing uses the context from here on.
         unsafe { (self.destroy)(self.context) }
     }
 }
@@ -48,9 +49,13 @@ impl Drop for OsMesa {
 pub(super) fn open() -> Result<(glow::Context, Box<dyn Platform>), String> {
     let library = load(NAMES[0]).or_else(|first| NAMES[1..].iter().find_map(|name| load(name).ok()).ok_or(first))?;
     let missing = |error: libloading::Error| format!("{} is not as expected: {error}", NAMES[0]);
+    // SAFETY: the type is that of GL/osmesa.h, and the library outlives the pointer in `OsMesa`.
     let create = *unsafe { library.get::<CreateContextAttribs>(b"OSMesaCreateContextAttribs\0") }.map_err(missing)?;
+    // SAFETY: the type is that of GL/osmesa.h, and the library outlives the pointer in `OsMesa`.
     let make_current = *unsafe { library.get::<MakeCurrent>(b"OSMesaMakeCurrent\0") }.map_err(missing)?;
+    // SAFETY: the type is that of GL/osmesa.h, and the library outlives the pointer in `OsMesa`.
     let destroy = *unsafe { library.get::<DestroyContext>(b"OSMesaDestroyContext\0") }.map_err(missing)?;
+    // SAFETY: the type is that of GL/osmesa.h, and the library outlives the pointer in `OsMesa`.
     let address = *unsafe { library.get::<GetProcAddress>(b"OSMesaGetProcAddress\0") }.map_err(missing)?;
 
     let attributes = [
@@ -60,17 +65,20 @@ pub(super) fn open() -> Result<(glow::Context, Box<dyn Platform>), String> {
         [CONTEXT_MINOR_VERSION, c_int::from(REQUIRED.1)],
         [0, 0],
     ];
+    // SAFETY: the list ends in 0, and null is no context to share with.
     let context = unsafe { create(attributes.as_flattened().as_ptr(), ptr::null_mut()) };
     if context.is_null() {
         return Err("gives no core context of OpenGL 4.3".into());
     }
     let mut buffer = Box::new([0u8; 4]);
     let pixels = buffer.as_mut_ptr().cast();
+    // SAFETY: the context is OSMesa's, and the buffer has a pixel of four bytes and lives as long as the context.
     let current = unsafe { make_current(context, pixels, glow::UNSIGNED_BYTE, 1, 1) };
     let platform = OsMesa { context, destroy, _buffer: buffer, _library: library };
     if current == 0 {
         return Err("would not make its context current".into());
     }
+    // SAFETY: the context is current, and its own library names its functions.
     let gl = unsafe {
         glow::Context::from_loader_function(|name| match CString::new(name) {
             Ok(name) => address(name.as_ptr()),

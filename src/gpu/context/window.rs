@@ -41,6 +41,7 @@ pub fn event_loop<T>() -> Result<EventLoop<T>> {
     };
     if wayland.is_none() {
         for name in X11_LIBRARIES {
+            // SAFETY: they are libraries of the system, whose initialisers are those that winit would run.
             if unsafe { Library::new(name) }.is_err() {
                 let packages = Backend::Window.packages();
                 let reason = format!("{name} was not found (on Debian: apt-get install {packages})");
@@ -74,6 +75,7 @@ impl Display {
         let mut reasons = Vec::new();
         for (name, api) in [("GLX", glx), ("EGL", DisplayApiPreference::Egl)] {
             let opened = trusting(Backend::Window.library(), || {
+                // SAFETY: the handle is that of the event loop, which outlives every display of its.
                 let display = unsafe { GlDisplay::new(handle, api) }.map_err(|error| error.to_string())?;
                 Self::try_open(&display)
             });
@@ -94,6 +96,7 @@ impl Display {
             .with_transparency(false)
             .build();
         // vglare draws without depth, stencil or samples.
+        // SAFETY: the template names no native window that would have to be one.
         let config = unsafe { display.find_configs(template) }
             .map_err(|error| error.to_string())?
             .min_by_key(|config| (config.num_samples(), !config.hardware_accelerated()))
@@ -129,6 +132,7 @@ fn new_context(config: &Config) -> Result<NotCurrentContext, String> {
             .with_profile(GlProfile::Core)
             .with_robustness(robustness)
             .build(None);
+        // SAFETY: the configuration is of this display, and no other context shares with it.
         unsafe { config.display().create_context(config, &attributes) }
     };
     create(Robustness::RobustLoseContextOnReset)
@@ -140,6 +144,7 @@ fn new_surface(config: &Config, window: &Window) -> Result<glutin::surface::Surf
     let handle = window.window_handle().map_err(|error| error.to_string())?.as_raw();
     let (width, height) = sides(window.inner_size().into());
     let attributes = SurfaceAttributesBuilder::<WindowSurface>::new().build(handle, width, height);
+    // SAFETY: the handle is that of the window, which `Surface` keeps for longer than its surface.
     unsafe { config.display().create_window_surface(config, &attributes) }.map_err(|error| error.to_string())
 }
 
@@ -152,10 +157,11 @@ fn current(
 ) -> Result<(Rc<Device>, Rc<PossiblyCurrentContext>), String> {
     let context = Rc::new(context.make_current(surface).map_err(|error| error.to_string())?);
     let display = config.display();
+    // SAFETY: the context is current, and its own display names its functions.
     let gl = unsafe { glow::Context::from_loader_function_cstr(|name| display.get_proc_address(name)) };
     let reset_status = reset_status(&gl, &display);
     let platform = OnScreen { _context: context.clone(), route, reset_status };
-    Ok((Rc::new(Device::new(gl, Backend::Window, Box::new(platform))?), context))
+    Ok((Rc::new(Device::new(super::shared(gl), Backend::Window, Box::new(platform))?), context))
 }
 
 type ResetStatus = unsafe extern "system" fn() -> u32;
@@ -173,6 +179,7 @@ fn reset_status(gl: &glow::Context, display: &GlDisplay) -> Option<ResetStatus> 
         return None;
     };
     // The signature is that of the specification.
+    // SAFETY: an address or null becomes a function or none, and its signature is that of the specification.
     unsafe { std::mem::transmute::<*const std::ffi::c_void, Option<ResetStatus>>(display.get_proc_address(name)) }
 }
 
@@ -188,6 +195,7 @@ impl Platform for OnScreen {
     }
 
     fn is_lost(&self) -> bool {
+        // SAFETY: the function is the context's own, which is current, and takes nothing.
         self.reset_status.is_some_and(|ask| unsafe { ask() } != glow::NO_ERROR)
     }
 }

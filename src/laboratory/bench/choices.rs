@@ -40,7 +40,7 @@ struct Outcome {
 /// Plans random scenes, and renders each by every evaluator that is not hopeless.
 pub(super) fn of_random_scenes(stage: &Stage, report: &mut Report, count: u32) -> Result<()> {
     let progress = Progress::start(false);
-    progress.step("random scenes");
+    progress.say("random scenes");
     progress.measured(count as usize);
     let mut outcomes = Vec::new();
     for seed in 0..u64::from(count) {

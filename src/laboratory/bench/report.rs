@@ -66,6 +66,7 @@ pub(super) struct Bar {
     pub measured: f64,
 }
 
+/// What a ratio is meant to be.
 #[derive(Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Target {

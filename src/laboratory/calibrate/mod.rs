@@ -78,7 +78,7 @@ pub fn run(args: &Args) -> Result<()> {
         calibration::ready()?;
     }
     let progress = Progress::start(false);
-    progress.step("measuring");
+    progress.say("measuring");
     let device = Device::open(args.backend.backends())?;
     let fitted = fit::measure(&device, Rounds::new(0, args.rounds.into()))?;
     drop(progress);

@@ -8,8 +8,11 @@ use crate::false_colour::Map;
 /// A scalar at every pixel, row by row from the top.
 #[derive(Debug, Clone)]
 pub struct Scalar {
+    /// Columns.
     pub width: u32,
+    /// Rows.
     pub height: u32,
+    /// `width` × `height` values.
     pub values: Vec<f64>,
 }
 

@@ -25,9 +25,12 @@ pub const COLOURS: [Colour; 7] =
 /// How a series is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Stroke {
+    /// A line.
     #[default]
     Solid,
+    /// A line of dashes.
     Dashed,
+    /// A line of dots.
     Dotted,
     /// A disc at each point and no line.
     Points,
@@ -42,8 +45,11 @@ pub enum Stroke {
 /// Points of one kind, in their order along the line. A point that has no place, NaN say, breaks the line.
 #[derive(Debug, Clone)]
 pub struct Series {
+    /// What the legend calls it; empty keeps it out.
     pub label: String,
+    /// x and y of each point, in the axes' units.
     pub points: Vec<[f64; 2]>,
+    /// How it is drawn.
     pub stroke: Stroke,
     /// By default the next of [`COLOURS`].
     pub colour: Option<Colour>,
@@ -80,7 +86,9 @@ impl Series {
 pub struct Mark {
     /// Stands beside the line.
     pub label: String,
+    /// The place on the axis that it crosses, in its units.
     pub at: f64,
+    /// Which way it runs.
     pub along: Along,
 }
 
@@ -96,13 +104,16 @@ pub enum Along {
 /// A colour bar beside the plot.
 #[derive(Debug, Clone)]
 pub struct Bar {
+    /// What the colours stand for.
     pub axis: Axis,
+    /// The colours.
     pub map: Map,
 }
 
 /// Columns of numbers, each with a name of its own; NaN is written as an empty cell.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Numbers {
+    /// The columns' names.
     pub columns: Vec<String>,
     /// As many numbers in each as there are columns.
     pub rows: Vec<Vec<f64>>,
@@ -113,13 +124,19 @@ pub struct Numbers {
 /// One chart.
 #[derive(Debug, Clone)]
 pub struct Chart {
+    /// What stands above; may be empty.
     pub title: String,
+    /// The axis along.
     pub x: Axis,
+    /// The axis upwards.
     pub y: Axis,
+    /// What is drawn, the first one lowest.
     pub series: Vec<Series>,
+    /// Lines across the plot.
     pub marks: Vec<Mark>,
     /// A picture that fills the plot, corner to corner.
     pub backdrop: Option<RgbImage>,
+    /// The colour bar of the backdrop.
     pub bar: Option<Bar>,
     /// Pixels of the whole chart.
     pub size: [u32; 2],

@@ -45,13 +45,13 @@ pub fn run(args: &Args) -> Result<()> {
     let started = Instant::now();
     apart(args)?;
     let progress = Progress::start(args.quiet);
-    progress.step("reading the panorama");
+    progress.say("reading the panorama");
     let panorama = Panorama::read(args)?;
     let size =
         args.size.map_or(panorama.grid, |size| Grid { width: size.width as usize, height: size.height as usize });
     check_targets(args, &panorama.output(size, vec![[0.0; 4]; size.width * size.height]))?;
 
-    progress.step("projecting");
+    progress.say("projecting");
     let (grid, read) = (panorama.grid, |row: usize, out: &mut [[f64; 3]]| panorama.row(row, out));
     let own = project_panorama(grid, args.degree, Reading::Areas, read);
     let rotation = args.rotate.map(|Angles(angles)| {
@@ -60,17 +60,17 @@ pub fn run(args: &Args) -> Result<()> {
     });
     let turned = rotation.map_or_else(|| own.clone(), |rotation| own.rotated(rotation));
     let check = rotation.filter(|_| args.check).map(|rotation| {
-        progress.step("turning the panorama");
+        progress.say("turning the panorama");
         panorama.check(&turned, rotation)
     });
 
-    progress.step("reconstructing");
+    progress.say("reconstructing");
     let shown = if args.irradiance { turned.irradiance() } else { turned };
     let pixels = shown.to_panorama(size, opaque);
     let (energy, error) = panorama.error(&own, (shown == own && size == grid).then_some(&pixels));
     let range = range(&pixels);
 
-    progress.step("writing");
+    progress.say("writing");
     if let Some(path) = &args.coefficients {
         let kind = if args.irradiance { Kind::Irradiance } else { Kind::Radiance };
         coefficients::write(path, args, &shown, kind)?;

@@ -83,7 +83,7 @@ pub fn run(args: &Args) -> Result<()> {
     let progress = Progress::start(args.quiet);
     let mut reports = Vec::new();
     for (index, experiment) in experiments.iter().enumerate() {
-        progress.step(format!("{} ({} of {})", experiment.name(), index + 1, experiments.len()));
+        progress.say(format!("{} ({} of {})", experiment.name(), index + 1, experiments.len()));
         let report = experiment.run(&mut lab)?;
         book.add(&report, lab.info())?;
         // Its pictures are on disk now.

@@ -40,7 +40,8 @@ macro_rules! experiments {
         /// Every experiment, with its parameters.
         #[derive(Debug, Clone, Subcommand)]
         pub enum Experiment {
-            $(#[command(name = $name)] $variant($module::Args),)*
+            // A doc here would be the help; that is the parameters' own.
+            $(#[allow(missing_docs)] #[command(name = $name)] $variant($module::Args),)*
         }
 
         impl Experiment {

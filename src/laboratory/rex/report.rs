@@ -12,12 +12,15 @@ use crate::Result;
 pub struct Report {
     /// The name on the command line; also its folder's.
     pub name: &'static str,
+    /// What the page calls it.
     pub title: String,
     /// Paragraphs: what is shown, and what to see in it.
     pub about: Vec<String>,
     /// What it was run with: name and value.
     pub parameters: Vec<(String, String)>,
+    /// Pictures and charts.
     pub figures: Vec<Figure>,
+    /// Tables.
     pub tables: Vec<Table>,
     /// What was measured: what, and how much.
     pub measures: Vec<(String, String)>,
@@ -54,6 +57,7 @@ impl Report {
 pub struct Figure {
     /// Lower case, digits and hyphens.
     pub stem: String,
+    /// What it shows, in words.
     pub caption: String,
     /// Written as PNG.
     pub picture: RgbImage,
@@ -96,7 +100,9 @@ impl Figure {
 /// A picture in linear light, row by row from the top.
 #[derive(Debug, Clone)]
 pub struct Field {
+    /// Columns.
     pub width: u32,
+    /// Rows.
     pub height: u32,
     /// RGBA; `width` × `height` of them.
     pub pixels: Vec<[f32; 4]>,
@@ -107,7 +113,9 @@ pub struct Field {
 pub struct Table {
     /// Lower case, digits and hyphens.
     pub stem: String,
+    /// What it lists, in words.
     pub caption: String,
+    /// The columns' names.
     pub header: Vec<String>,
     /// As many cells in each as the header has.
     pub rows: Vec<Vec<String>>,

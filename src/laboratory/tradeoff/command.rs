@@ -82,10 +82,10 @@ pub fn run(args: &Args) -> Result<()> {
     tradeoff::spare(&args.output, &inputs)?;
     let mut look = args.scene.look()?;
     look.find = args.find.over(look.find);
-    progress.step("reading the photo");
+    progress.say("reading the photo");
     let photo = photo::read_with(&args.photo, &args.reading.options())?;
     warn(&photo.source.notes);
-    progress.step("finding the lights");
+    progress.say("finding the lights");
     let scene = look.gather(&photo);
     let name = name(&args.photo);
     let subject = Subject::new(&name, &photo, &scene.ghosts)?;
@@ -95,7 +95,7 @@ pub fn run(args: &Args) -> Result<()> {
     warn(&known.warning);
     let costs = known.file.is_some().then_some(known.model);
     let results = tradeoff::measure(&subject, &device, costs, args.quick, &mut |what, done| progress.part(what, done))?;
-    progress.step("writing");
+    progress.say("writing");
     let index = tradeoff::write(&args.output, &results)?;
     drop(progress);
     if args.quiet { Ok(()) } else { stdout::print(|out| summary(out, &results, &index)) }

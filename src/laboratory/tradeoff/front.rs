@@ -14,6 +14,7 @@ const SAME: f64 = 1.15;
 /// Where one evaluator becomes faster than the direct sum.
 #[derive(Debug, Clone, Serialize)]
 pub struct Crossover {
+    /// The evaluator that meets the direct sum.
     pub evaluator: Evaluator,
     /// The number of ghosts; none where it happens nowhere in the sweep, or before it begins.
     pub ghosts: Option<f64>,
@@ -24,11 +25,15 @@ pub struct Crossover {
 /// What to use for this photo here.
 #[derive(Debug, Clone, Serialize)]
 pub struct Recommendation {
+    /// The tolerance to ask for.
     pub tolerance: f64,
+    /// What the planner takes at it.
     pub evaluator: Evaluator,
     /// At the photo's own size where that was timed, else at the sweeps'.
     pub width: u32,
+    /// Rows of that picture.
     pub height: u32,
+    /// Spectrum, field and composite, milliseconds.
     pub ms: f64,
     /// The largest error of any picture at this tolerance, where all pixels of the timed one were measured, or a sample.
     pub measured: f64,
@@ -36,6 +41,7 @@ pub struct Recommendation {
     pub everywhere: bool,
     /// At the sample's pixels and, where pictures of it were drawn, at all of theirs.
     pub delta_e_max: f64,
+    /// Of the tone-mapped composite, in dB.
     pub psnr_db: f64,
     /// Whether its largest ΔE2000 is below [`VISIBLE`].
     pub invisible: bool,

@@ -64,27 +64,37 @@ pub type Watch<'a> = &'a mut dyn FnMut(f64);
 #[derive(Serialize)]
 pub struct Results {
     vglare: &'static str,
+    /// The photo's name.
     pub photo: String,
-    /// The photo's size, and that of the picture that the sweeps ran at.
+    /// Columns and rows of the photo.
     pub picture: [u32; 2],
+    /// Columns and rows of the picture that the sweeps ran at.
     pub swept: [u32; 2],
+    /// Ghosts that the photo has.
     pub ghosts: usize,
+    /// Whether fewer settings and rounds were asked for.
     pub quick: bool,
-    /// Rounds that each time is the median of, and pixels that each error is the largest of.
+    /// Rounds that each time is the median of.
     pub rounds: usize,
+    /// Pixels that each error is the largest of.
     pub sample: usize,
+    /// What it was measured on.
     pub device: Info,
     /// Whether the planner reckoned with costs that were measured on this machine.
     pub calibrated: bool,
+    /// What to use; none where nothing was exact enough.
     pub recommendation: Option<Recommendation>,
+    /// Every setting that was tried, sweep by sweep.
     pub points: Vec<Point>,
     /// The points on the front of the tolerance sweep, by their index, the fastest first.
     pub front: Vec<usize>,
+    /// Where each evaluator becomes faster than the direct sum.
     pub crossovers: Vec<Crossover>,
-    /// The period that the phases' stability was measured in, and the turns of the highest harmonic that the planner
-    /// takes at the picture's border.
+    /// The period that the phases' stability was measured in.
     pub phase_period: f64,
+    /// Turns of the highest harmonic that the planner takes, at the picture's border; none where it takes none.
     pub phase_reach: Option<f64>,
+    /// The phases' errors, a curve for each way to compute them.
     pub phases: Vec<PhaseCurve>,
     #[serde(skip)]
     looks: Looks,

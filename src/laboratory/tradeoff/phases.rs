@@ -19,6 +19,7 @@ const BINS: f64 = 2.0;
 /// One way, and its errors.
 #[derive(Debug, Clone, Serialize)]
 pub struct PhaseCurve {
+    /// What it is called.
     pub way: &'static str,
     /// n·x/T in turns where x is the picture's border, and the largest error at any position in the picture of the
     /// harmonics up to that n, down to the next point's.

@@ -40,10 +40,13 @@ pub enum Storage {
 /// relative to the field's largest value of the same colour, times are medians in milliseconds.
 #[derive(Debug, Clone, Serialize)]
 pub struct Point {
+    /// The sweep that it belongs to.
     pub sweep: Sweep,
+    /// How many ghosts are summed.
     pub ghosts: usize,
-    /// The picture's size in pixels.
+    /// Columns of the picture.
     pub width: u32,
+    /// Rows of the picture.
     pub height: u32,
     /// The tolerance that was asked for.
     pub asked: Option<f64>,
@@ -51,27 +54,37 @@ pub struct Point {
     pub planner: bool,
     /// None where the planner found no plan.
     pub evaluator: Option<Evaluator>,
+    /// The series' period in x, in half picture heights.
     pub period_x: Option<f64>,
+    /// The same in y.
     pub period_y: Option<f64>,
+    /// The series' highest harmonic in x.
     pub degree_x: Option<u32>,
+    /// The same in y.
     pub degree_y: Option<u32>,
+    /// How many terms of the series are kept.
     pub terms: Option<usize>,
     /// Nodes a half wave of the highest harmonic, the fewer of x and y.
     pub oversampling: Option<f64>,
+    /// What the spectrum is kept as.
     pub storage: Storage,
     /// The plan's bound.
     pub predicted: Option<f64>,
     /// The largest error at the sample's pixels.
     pub measured: Option<f64>,
+    /// The root of the mean square of the errors at the sample's pixels.
     pub rms: Option<f64>,
     /// Of the tone-mapped composite, in dB.
     pub psnr_db: Option<f64>,
-    /// ΔE2000 of the tone-mapped composite, the largest and the mean.
+    /// ΔE2000 of the tone-mapped composite, the largest.
     pub delta_e_max: Option<f64>,
+    /// The mean of ΔE2000.
     pub delta_e_mean: Option<f64>,
-    /// Spectrum, field and composite.
+    /// Spectrum, field and composite: the median of the rounds.
     pub ms: Option<f64>,
+    /// The fastest round.
     pub least_ms: Option<f64>,
+    /// The slowest round.
     pub most_ms: Option<f64>,
     /// The spectrum alone.
     pub spectrum_ms: Option<f64>,

@@ -199,3 +199,19 @@ fn what_no_file_can_say_is_not_written() {
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "");
     }
 }
+
+#[test]
+#[cfg(unix)]
+fn a_scene_goes_through_a_link_and_keeps_the_permissions() {
+    use std::os::unix::fs::{PermissionsExt as _, symlink};
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    std::fs::write(path("look.toml"), "").unwrap();
+    std::fs::set_permissions(path("look.toml"), std::fs::Permissions::from_mode(0o640)).unwrap();
+    symlink("look.toml", path("link.toml")).unwrap();
+    let scene = SceneFile { description: "a veil".into(), ..SceneFile::default() };
+    write_scene(&path("link.toml"), &scene, true).unwrap();
+    assert!(path("link.toml").is_symlink(), "the link stays a link");
+    let kept = std::fs::metadata(path("look.toml")).unwrap();
+    assert!(kept.len() > 0 && kept.permissions().mode() & 0o777 == 0o640, "{kept:?}");
+}

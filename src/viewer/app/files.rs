@@ -280,7 +280,7 @@ impl App {
             index += 1;
             let strip = Panel::bottom(("export", index)).show(ui, |ui| {
                 ui.horizontal(|ui| {
-                    ui.add(ProgressBar::new(export.part()).desired_width(220.0).text(export.step()));
+                    ui.add(ProgressBar::new(export.part()).desired_width(220.0).text(export.step().to_string()));
                     let about = "The file does not appear then";
                     let cancel = ui.button("Cancel").on_hover_text(about);
                     mark(ui, "Cancel writing", about, &cancel);

@@ -14,7 +14,7 @@ impl Look {
     /// The lights as a list to be edited, of which `found` are the photo's.
     pub fn lights_mut(&mut self, found: &[Light]) -> &mut Vec<Light> {
         if !matches!(self.lights, LookLights::Listed(_)) {
-            self.lights = LookLights::Listed(self.lights(found).into_owned());
+            self.lights = LookLights::Listed(self.lights(found).into_owned().into());
         }
         match &mut self.lights {
             LookLights::Listed(lights) => lights,
@@ -73,7 +73,7 @@ impl Look {
     /// The lens's table, to be edited.
     pub fn lens_mut(&mut self) -> &mut Vec<LensGhost> {
         if !matches!(self.lens, LookLens::Own(_)) {
-            self.lens = LookLens::Own(self.lens.ghosts().to_vec());
+            self.lens = LookLens::Own(self.lens.ghosts().to_vec().into());
         }
         match &mut self.lens {
             LookLens::Own(ghosts) => ghosts,
@@ -182,7 +182,7 @@ mod tests {
         let mut look = Look::default();
         edit(&mut look);
         let LookLights::Listed(lights) = look.lights else { panic!("an edit lists the lights") };
-        lights
+        lights.to_vec()
     }
 
     #[test]
@@ -199,10 +199,10 @@ mod tests {
 
     #[test]
     fn an_edit_lists_what_was_added_to_the_found_ones_too() {
-        let mut look = Look { lights: LookLights::FoundAnd(vec![light(3.0)]), ..Look::default() };
+        let mut look = Look { lights: LookLights::FoundAnd(vec![light(3.0)].into()), ..Look::default() };
         look.mute_light(&found(), 2, true);
         let [first, second] = found();
-        assert_eq!(look.lights, LookLights::Listed(vec![first, second, Light { muted: true, ..light(3.0) }]));
+        assert_eq!(look.lights, LookLights::Listed(vec![first, second, Light { muted: true, ..light(3.0) }].into()));
     }
 
     #[test]
@@ -262,6 +262,6 @@ mod tests {
         for _ in 0..20 {
             look.delete_lens_ghost(0);
         }
-        assert_eq!(look.lens, LookLens::Own(vec![row]));
+        assert_eq!(look.lens, LookLens::Own(vec![row].into()));
     }
 }

@@ -193,7 +193,7 @@ mod tests {
     #[test]
     fn looks_of_very_many_lights_are_few_steps_and_the_last_can_always_be_undone() {
         let light = Light { position: glam::DVec2::ZERO, flux: [1.0; 3], size: 0.0, muted: false };
-        let many = |strength, count| Look { lights: LookLights::Listed(vec![light; count]), ..of(strength) };
+        let many = |strength, count| Look { lights: LookLights::Listed(vec![light; count].into()), ..of(strength) };
         let mut history = History::new(many(0.0, 300_000));
         (1..=20).for_each(|step| history.set(many(f64::from(step), 300_000)));
         assert_eq!(history.before.iter().map(listed).sum::<usize>(), 900_000);

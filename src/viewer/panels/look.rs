@@ -101,7 +101,7 @@ fn preset(ui: &mut Ui, look: &mut Look, opened: &LookLens) {
                 let chosen = matches!(&look.lens, LookLens::Preset(now) if now.name == lens.name);
                 let about = lens.description.clone();
                 if item_of(ui, &lens.name, &about, |ui| ui.selectable_label(chosen, &lens.name)) {
-                    look.lens = LookLens::Preset(lens);
+                    look.lens = LookLens::Preset(lens.into());
                 }
             }
         })

@@ -43,8 +43,9 @@ pub struct CutPoint {
 pub struct Degree {
     /// The highest harmonic, that of x and of y.
     pub degree: u32,
-    /// What truncation costs at most, and all sources together.
+    /// What truncation costs at most.
     pub truncation: f64,
+    /// What all sources cost together, at most.
     pub total: f64,
 }
 

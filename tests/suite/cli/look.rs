@@ -2,7 +2,7 @@
 
 use serde_json::json;
 use vglare::gpu::{Backend, Device};
-use vglare::job::{Computer, Job, Stages, Unwatched, Wanted};
+use vglare::job::{Computer, Found, Known, Stages, Unwatched, Wanted};
 use vglare::look::Look;
 use vglare::photo::{self, WriteOptions};
 use vglare::scene::read_scene;
@@ -70,20 +70,20 @@ fn a_look_gives_the_same_bytes_without_a_command_line() {
     let photo = place.photo("in.exr");
     let _turn = turn();
     let device = Device::open(&Backend::ALL).unwrap_or_else(|error| panic!("this test needs GL: {error}"));
-    let mut computer = Computer::new(device);
+    let mut computer = Computer::new(device, Known::default());
     for text in [
         "preset = \"zoom\"\n[look]\nsize = 0.7\nmix = \"energy\"\n",
         &format!("{SCENE}muted = true\n[look]\nnormalize = \"minmax\"\n[accuracy]\nevaluator = \"direct\"\n"),
         "[look]\nstrength = 0\n",
     ] {
         let look = Look::from_scene(read_scene(&place.text("look.toml", text)).unwrap()).unwrap();
-        let mut job = Job::new(&look, photo::read(&photo).unwrap(), Stages::default()).unwrap();
-        let wanted = Wanted { calibrated: false, ..Wanted::default() };
-        job.compute(Some(&mut computer), wanted, &Unwatched).unwrap();
+        let found = Found::new(&look, photo::read(&photo).unwrap(), Stages::default()).unwrap();
+        let done = found.compute(Some(&mut computer), Wanted::default(), &Unwatched).unwrap();
         let path = place.path("job.exr");
-        photo::write(&path, &job.photo, &WriteOptions { overwrite: true, ..WriteOptions::default() }).unwrap();
+        photo::write(&path, &done.picture.unwrap(), &WriteOptions { overwrite: true, ..WriteOptions::default() })
+            .unwrap();
         assert!(std::fs::read(path).unwrap() == place.applied(&["--scene", "look.toml"]), "{text}");
-        assert_eq!(job.certificate.is_some(), look.strength != 0.0);
+        assert_eq!(done.computed.is_some(), look.strength != 0.0);
     }
 }
 

@@ -12,9 +12,10 @@ use crate::support::{on_backend, scenes};
 
 const COLOUR: [f64; 3] = [1.0, 2.0, 0.5];
 
-/// A picture with a pixel at the origin.
+/// A picture with a pixel at the origin, and few others: the degree that a ghost of a few pixels asks for grows with
+/// the picture, and what it takes to sum it with a high power of that.
 fn frame() -> Frame {
-    Frame::full(65, 37)
+    Frame::full(33, 19)
 }
 
 /// Bells that need no period of their own.

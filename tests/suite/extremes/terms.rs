@@ -149,7 +149,7 @@ fn the_singularity_of_cosine_squared_is_none_on_the_gpu() {
                 renderer.field.set_scene(&plan).unwrap();
                 // Against the same terms in f64: the harmonic at the singularity is a tenth of the field.
                 let exact: Vec<_> =
-                    points.iter().map(|&at| series(&ghosts, plan.period(), &plan.counts(), at)).collect();
+                    points.iter().map(|&at| series(&ghosts, plan.period(), plan.counts(), at)).collect();
                 let difference = compare(&exact, &renderer.field.probe(frame, &pixels).unwrap());
                 worst.take(difference.relative, || format!("{}, half width {half}", ghosts[0].bell));
             }

@@ -6,26 +6,12 @@ use vglare::plan::Plan;
 use vglare::scene::Ghost;
 use vglare::series::Bell;
 
-/// SplitMix64: 64 bits of state, and enough quality to place ghosts.
-pub struct Chance(u64);
+#[path = "../../../src/chance.rs"]
+mod chance;
+
+pub(crate) use chance::Chance;
 
 impl Chance {
-    pub fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    /// Evenly from `low` to `high`.
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.bits() >> 11) as f64 / 2f64.powi(53)
-    }
-
     /// From `low` to `high`, every octave as likely.
     pub fn octaves(&mut self, low: f64, high: f64) -> f64 {
         self.between(low.ln(), high.ln()).exp()
@@ -33,7 +19,12 @@ impl Chance {
 
     /// 0 ..= `last`.
     pub fn up_to(&mut self, last: u32) -> u32 {
-        (self.bits() % (u64::from(last) + 1)) as u32
+        self.below(u64::from(last) + 1) as u32
+    }
+
+    /// Below `count`.
+    pub fn below(&mut self, count: u64) -> u64 {
+        self.bits() % count
     }
 }
 

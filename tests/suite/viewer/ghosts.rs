@@ -52,7 +52,7 @@ fn a_ghost_is_placed_dragged_undone_and_saved() {
     let path = folder.path().join("look.toml");
     session.app.save_look(&path);
     assert_eq!(session.app.notices(), [] as [String; 0]);
-    assert_eq!(read_scene(&path).unwrap().ghosts, session.document().look.ghosts);
+    assert_eq!(read_scene(&path).unwrap().ghosts, *session.document().look.ghosts);
 
     session.press(Key::Delete);
     assert!(session.document().look.ghosts.is_empty());

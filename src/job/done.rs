@@ -1,0 +1,59 @@
+//! The last step: the picture, and how it came about.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::{Planning, Stages};
+use crate::certificate::Certificate;
+use crate::gpu::{Info, PassTime};
+use crate::look::{Gathered, Look};
+use crate::photo::{BadPixels, Facts, Photo};
+
+/// A photo that has its glare.
+pub struct Done<'a> {
+    /// What was laid over it.
+    pub look: &'a Look,
+    /// What is told of the photo.
+    pub facts: Facts,
+    /// The photo's pixels that are no light.
+    pub bad: BadPixels,
+    /// What glares in it.
+    pub scene: Gathered,
+    /// The photo with its glare, where that is wanted.
+    pub picture: Option<Photo>,
+    /// The glare alone, where that is wanted.
+    pub glare: Option<Photo>,
+    /// How the glare was computed, where there is any.
+    pub computed: Option<Computed>,
+    /// How long each stage took, from reading on.
+    pub stages: Stages,
+    /// What a person ought to know.
+    pub warnings: Vec<String>,
+}
+
+/// How glare was computed.
+pub struct Computed {
+    /// On what.
+    pub info: Arc<Info>,
+    /// How.
+    pub planning: Planning,
+    /// How exactly.
+    pub certificate: Certificate,
+    /// How long each pass took, where that is wanted.
+    pub passes: Vec<PassTime>,
+    /// Milliseconds that spectrum, field and composite took, without upload and readback; where passes were timed.
+    pub measured_ms: Option<f64>,
+}
+
+impl Done<'_> {
+    /// Says so where the picture has values beyond `largest`, which is what its file holds.
+    pub fn beyond(&self, largest: f32) -> Option<String> {
+        let beyond = |pixel: &&[f32; 4]| pixel[..3].iter().any(|value| value.abs() > largest || value.is_nan());
+        // Those that the photo had have been told.
+        let before = self.bad.nan + self.bad.infinite;
+        let count = self.picture.as_ref()?.pixels.par_iter().filter(beyond).count().saturating_sub(before);
+        let pixels = if count == 1 { "pixel of the picture is" } else { "pixels of the picture are" };
+        (count > 0).then(|| format!("{count} {pixels} beyond {largest:.4e}, the largest value that its file holds"))
+    }
+}

@@ -1,0 +1,95 @@
+//! The first step: what glares in a photo.
+
+use std::sync::Arc;
+
+use super::{Computer, Done, Planned, Stages, Step, Wanted, Watch, bright_light, plan, settings};
+use crate::Result;
+use crate::look::{Gathered, Look, Search};
+use crate::photo::{self, BadPixels, Facts, Photo};
+use crate::problem::Problem;
+use crate::renderer::Settings;
+
+/// A photo in which it is known what glares.
+pub struct Found<'a> {
+    /// What is laid over it.
+    pub look: &'a Look,
+    /// Someone else may hold it, too; where no one does, the picture takes over its memory.
+    pub photo: Arc<Photo>,
+    /// What is told of it.
+    pub facts: Facts,
+    /// Its pixels that are no light.
+    pub bad: BadPixels,
+    /// What glares in it.
+    pub scene: Gathered,
+    /// How long each stage took, from reading on.
+    pub stages: Stages,
+    /// What a person ought to know.
+    pub warnings: Vec<String>,
+    pub(super) settings: Settings,
+}
+
+impl<'a> Found<'a> {
+    /// Finds what glares in a photo.
+    ///
+    /// # Errors
+    /// Those of [`settings`].
+    pub fn new(look: &'a Look, photo: impl Into<Arc<Photo>>, stages: Stages) -> Result<Self> {
+        Self::knowing(look, photo, None, stages)
+    }
+
+    /// The same for a photo that may have been searched already: by the rules of this look it is not searched again.
+    ///
+    /// # Errors
+    /// Those of [`settings`].
+    pub fn knowing(
+        look: &'a Look,
+        photo: impl Into<Arc<Photo>>,
+        search: Option<Search>,
+        mut stages: Stages,
+    ) -> Result<Self> {
+        let photo = photo.into();
+        let bad = stages.time("survey", || photo::survey(&photo));
+        let scene = stages.time("lights", || look.gather_knowing(&photo, search));
+        let mut warnings = photo.source.notes.clone();
+        let (settings, warning) = settings(look, &photo, &scene, |threshold| bright_light(&photo, threshold))?;
+        warnings.extend(warning);
+        Ok(Self { look, facts: photo.facts(), photo, bad, scene, stages, warnings, settings })
+    }
+
+    /// Lays the glare over the photo. A look of strength 0 has none and needs no computer; without a computer there is
+    /// none either.
+    ///
+    /// # Errors
+    /// Those of [`Found::plan`] and [`Planned::render`].
+    pub fn compute(self, computer: Option<&mut Computer>, wanted: Wanted, watch: &impl Watch) -> Result<Done<'a>> {
+        match computer.filter(|_| self.look.renders()) {
+            Some(computer) => self.plan(computer, watch)?.render(computer, wanted, watch),
+            None => Ok(self.without_glare(wanted)),
+        }
+    }
+
+    /// Plans how the glare is computed.
+    ///
+    /// # Errors
+    /// Where there is no plan, or its glare is beyond what 32-bit floats hold; [`crate::Error::Cancelled`].
+    pub fn plan(mut self, computer: &mut Computer, watch: &impl Watch) -> Result<Planned<'a>> {
+        watch.begin(Step::Planning)?;
+        let problem = Problem::new(self.scene.ghosts.clone(), self.photo.frame);
+        let (accuracy, known) = (&self.look.accuracy, computer.known.clone());
+        let planning = self.stages.time("plan", || plan(accuracy, &problem, Some(&computer.info), known))?;
+        computer.known.warning = None;
+        self.warnings.extend(planning.warnings.iter().cloned());
+        self.settings.check(planning.plan.scale)?;
+        self.warnings.extend(self.absurd(&planning.plan));
+        Ok(Planned { found: self, planning, info: computer.info.clone() })
+    }
+
+    /// The photo as it is, and black glare.
+    fn without_glare(self, wanted: Wanted) -> Done<'a> {
+        let Self { look, photo, facts, bad, scene, stages, warnings, settings: _ } = self;
+        let dark = || photo.companion(vec![[0.0, 0.0, 0.0, 1.0]; photo.frame.window.pixels()]);
+        let glare = wanted.glare.then(dark);
+        let picture = wanted.picture.then(|| Arc::unwrap_or_clone(photo));
+        Done { look, facts, bad, scene, picture, glare, computed: None, stages, warnings }
+    }
+}
