@@ -71,17 +71,18 @@ impl Evaluators {
         })
     }
 
-    /// Uploads the ghosts that `direct` sums, and what their bells need to know beside: in 32-bit floats or in 64.
+    /// Uploads the ghosts that `direct` sums, and what their bells need to know beside: in 32-bit floats or in 64. `none` is
+    /// a ghost without weight, finite at every pixel.
     ///
     /// # Errors
     /// [`Error::Gl`] where they are more than the software renderer goes through for one pixel.
-    pub fn set_ghosts<G: Pod, S: Pod>(&mut self, runner: &Runner, ghosts: &[G], shapes: &[S]) -> Result<()> {
+    pub fn set_ghosts<G: Pod, S: Pod>(&mut self, runner: &Runner, ghosts: &[G], none: G, shapes: &[S]) -> Result<()> {
         let few = FEW_BYTES as usize / size_of::<G>();
         self.many = ghosts.len() > few || runner.device().info().limits.uniform_block < FEW_BYTES;
-        // Ghosts without weight fill the last round.
+        // Such ghosts fill the last round.
         let step = if self.many { STEP } else { 1 };
         let mut padded = ghosts.to_vec();
-        padded.resize(ghosts.len().next_multiple_of(step), G::zeroed());
+        padded.resize(ghosts.len().next_multiple_of(step), none);
         let rounds = padded.len() / step + padded.len().div_ceil(BATCH);
         within_rounds(runner, rounds, "direct", ghosts.len(), "ghosts")?;
         self.ghost_count = padded.len();

@@ -147,6 +147,16 @@ pub(crate) struct DoubleGhost {
 }
 const _: () = assert!(size_of::<DoubleGhost>() == 64);
 
+impl DirectGhost {
+    /// None at all.
+    pub const NONE: Self = Self { center: [0.0; 2], inverse_size: [0.0; 2], weight: [0.0; 3], bell: 0 };
+}
+
+impl DoubleGhost {
+    /// None at all; of size 0 it would be 0 / 0 at its centre.
+    pub const NONE: Self = Self { center: [0.0; 2], size: [1.0; 2], weight: [0.0; 3], bell: 0, pad: 0 };
+}
+
 /// Where the pixels along one axis lie between the lattice's nodes: pixel i at `start + i * pitch`, counted in 2⁻²⁰ of a
 /// node from the second node that the tile has.
 ///

@@ -121,9 +121,9 @@ fn reached(ghost: &Ghost, offset: DVec2) -> f64 {
 }
 
 /// What a bell of peak 1 is at most at some distance or farther along an axis, in sizes. Where most ghosts stand, within a
-/// hundredth of their size of a pixel, that is 1, and no exponential is worth its time.
+/// hundredth of their size of a pixel, or of where they end, that is 1, and no exponential is worth its time.
 pub(super) fn along(shape: &dyn Shape, distance: f64) -> f64 {
-    if distance < 0.01 { 1.0 } else { shape.along(distance, 1.0) }
+    if distance < 0.01 * shape.ends().min(1.0) { 1.0 } else { shape.along(distance, 1.0) }
 }
 
 fn peak_weight(ghost: &Ghost, scale: [f64; 3]) -> f64 {

@@ -79,7 +79,7 @@ fn every_bell_is_exact_in_64_bits() {
     // More than a uniform block holds.
     let many: Vec<Ghost> =
         (0..1100).map(|k| Ghost { center: at().into(), ..ghosts[k % ghosts.len()].clone() }).collect();
-    hold(&[("all", by_direct(&ghosts, frame, 3e-7)), ("many", by_direct(&many, Frame::full(24, 14), 3e-7))]);
+    hold(&[("all", by_direct(&ghosts, frame, 3e-7)), ("many", by_direct(&many, Frame::full(25, 15), 3e-7))]);
 }
 
 #[test]
