@@ -10,7 +10,7 @@ use vglare::series::{Bell, SineGaussian, VonMises};
 
 use super::{measured, request};
 use crate::support::scenes::{self, Chance};
-use crate::support::{on_backend, plan};
+use crate::support::{long, on_backend, plan};
 
 /// Each evaluator has as many of them, and the plan's own choice, too.
 const SCENES: u64 = 50;
@@ -108,7 +108,7 @@ fn quantile(sorted: &[f64], part: f64) -> f64 {
 
 #[test]
 fn scenes_keep_the_promise() {
-    let count = if std::env::var_os("VGLARE_LONG_TESTS").is_some() { LONG } else { SCENES };
+    let count = if long() { LONG } else { SCENES };
     let scenes: Vec<Scene> = (0..count).map(scene).collect();
     for Scene { name, plan, asked, .. } in &scenes {
         assert!(plan.predicted.total() <= *asked, "{name}: {:?} for {asked:e}", plan.predicted);

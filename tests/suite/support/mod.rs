@@ -31,6 +31,11 @@ pub fn on_each_backend<T: Send>(test: impl Fn(Backend, &mut Picture) -> T + Sync
     Backend::ALL.into_iter().map(|backend| on_backend(backend, |renderer| test(backend, renderer))).collect()
 }
 
+/// Whether tests by chance, and those of very many terms, take their long form; `.ci/full` asks for it.
+pub fn long() -> bool {
+    std::env::var_os("VGLARE_LONG_TESTS").is_some()
+}
+
 /// Runs `test` on the backend that tests of numbers use.
 pub fn on_one_backend<T: Send>(test: impl FnOnce(Backend, &mut Picture) -> T + Send) -> T {
     on_backend(Backend::ALL[0], |renderer| test(Backend::ALL[0], renderer))
