@@ -89,7 +89,7 @@ fn keys(ghost: &Ghost, plan: &Plan, [low, high]: [DVec2; 2]) -> [f64; 3] {
     let offset = ((near - ghost.center) / ghost.size).abs();
     let strong = weight * shape.along(offset.x, 1.0) * shape.along(offset.y, 1.0);
     // A jump is steeper than anything, and still to be held against other jumps.
-    let slope = shape.steepest(offset.x.max(offset.y)).min(1e9);
+    let slope = shape.steepest(offset.x.max(offset.y)) + 1e7 * shape.jump();
     let steep = strong.min(weight) * slope / ghost.size.min_element();
     [strong, steep, steep * near.length()]
 }

@@ -279,7 +279,9 @@ impl<'a> Steepness<'a> {
             f64::INFINITY
         } else if self.radial {
             // The radius is not below what both offsets make.
-            self.shape.steepest(x.near.hypot(y.near)) * x.shift.hypot(y.shift)
+            let radius = x.near.hypot(y.near);
+            let jump = if radius <= self.shape.ends() { self.shape.jump() } else { 0.0 };
+            self.shape.steepest(radius) * x.shift.hypot(y.shift) + jump
         } else {
             slope(x.shift, y.shift)
         };

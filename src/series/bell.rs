@@ -103,13 +103,18 @@ pub trait Shape: Sync {
     /// A bound of what the copies of [`Shape::along`], `period` apart, add within `distance` < `period` of the centre.
     fn wrap(&self, period: f64, distance: f64, size: f64) -> f64;
 
-    /// How steep the bell is at most at an offset of at least `distance` sizes along an axis, for each size; infinite where
-    /// it jumps.
+    /// How steep the bell is at most at an offset of at least `distance` sizes along an axis, for each size, but for
+    /// [`Shape::jump`].
     fn steepest(&self, distance: f64) -> f64;
 
     /// The offset, in sizes, from which on along either axis the bell is nothing.
     fn ends(&self) -> f64 {
         f64::INFINITY
+    }
+
+    /// What the bell falls by all at once where it ends.
+    fn jump(&self) -> f64 {
+        0.0
     }
 
     /// Offsets in sizes, along an axis or the radius, at which the bell is steep or has a kink: where to look for errors.

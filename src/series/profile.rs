@@ -115,9 +115,7 @@ impl Profile {
         let reach = from_each_on(values.iter().map(|value| value.abs()).collect());
         let last = rows.len() - 1;
         let steepest = (0..last).map(|i| 2.0 * slopes[i].abs() * radii[i + 1]);
-        // What does not end at 0 jumps.
-        let jump = if values[last] == 0.0 { 0.0 } else { f64::INFINITY };
-        let steepest = from_each_on(steepest.chain([jump]).collect());
+        let steepest = from_each_on(steepest.chain([0.0]).collect());
         let mut profile = Self {
             radii,
             values,
@@ -301,6 +299,10 @@ impl Shape for Profile {
 
     fn ends(&self) -> f64 {
         self.radius()
+    }
+
+    fn jump(&self) -> f64 {
+        self.step().abs()
     }
 
     /// Both ends of the steepest part and its middle, the sharpest kink, and where the profile ends.

@@ -128,6 +128,20 @@ fn periodic_bells_have_no_copies_and_auto_may_sum_them_in_their_own_period() {
 }
 
 #[test]
+fn a_jump_counts_for_what_it_is() {
+    let frame = Frame::full(240, 135);
+    let bound = |last: f64| {
+        let bell = profile(&[[0.0, 1.0], [0.5, 0.4], [1.0, last]]);
+        let plan = by_direct(&[ghost(bell, [0.2, 0.1], 0.8)], frame, 1e-3);
+        (plan.precision, plan.predicted.total())
+    };
+    let (precision, predicted) = bound(0.0);
+    // What a cosine leaves at its end in f64.
+    assert_eq!(bound(3.7e-33), (precision, predicted));
+    assert!(precision == Precision::Single && bound(1e-5).1 > 1e-5 && bound(1e-2).0 == Precision::Double);
+}
+
+#[test]
 fn the_unit_of_a_profile_does_not_matter() {
     let frame = Frame::full(240, 135);
     let rows: Vec<[f64; 2]> = (0..=12).map(|i| [f64::from(i) / 12.0, (1.0 - f64::from(i) / 12.0).powi(2)]).collect();
