@@ -2,14 +2,13 @@
 
 use glam::DVec2;
 use vglare::frame::Frame;
-use vglare::gpu::{Region, Screen};
+use vglare::gpu::{Backend, Region, Screen};
 use vglare::photo::ToneMap;
 use vglare::plan::Request;
 use vglare::renderer::{Live, Mask, Normalize, Part, Settings, View};
 use vglare::scene::{Emission, FindOptions, find};
 
 use crate::support::{bits, on_live, plan, scenes};
-use vglare::gpu::{Backend, Device};
 
 const SURROUND: [f32; 3] = [0.2, 0.4, 0.6];
 
@@ -31,16 +30,6 @@ fn code(light: f32) -> f32 {
 }
 
 /// A photo of one row or more on a screen of the same size or another.
-/// Runs `test` on a thread and a context that nothing else has drawn on.
-fn on_own_context(backend: Backend, test: impl FnOnce(&mut Live) + Send) {
-    let run = || {
-        let _turn = crate::support::turn();
-        let device = Device::open(&[backend]).unwrap();
-        test(&mut Live::new(&device).unwrap());
-    };
-    std::thread::scope(|scope| scope.spawn(run).join().unwrap());
-}
-
 fn shown(live: &mut Live, photo: &[[f32; 4]], width: u32, view: &View, size: [u32; 2]) -> Vec<[u8; 4]> {
     live.picture.load(Frame::full(width, photo.len() as u32 / width), photo).unwrap();
     let screen = Screen::hidden(live.picture.field.device(), size).unwrap();
@@ -58,9 +47,8 @@ fn tone_maps_are_those_of_the_cpu() {
     for odd in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -0.5, f32::MAX, 0.0] {
         photo.push([odd, 0.5, 0.25, 1.0]);
     }
-    // On contexts of their own: what other renderers left on a kept one was seen to spoil these.
     for backend in Backend::ALL {
-        on_own_context(backend, |live| {
+        on_live(backend, |live| {
             for tone_map in [ToneMap::None, ToneMap::Reinhard, ToneMap::Aces, ToneMap::Agx] {
                 for exposure in [0.0, -2.0] {
                     let view = View { tone_map, exposure, ..view() };
@@ -83,9 +71,8 @@ fn rows_count_from_the_top_and_pixels_are_squares() {
     // Every pixel of its own colour: red by column, green by row.
     let light = |code: u32| ((code as f32 / 255.0 + 0.055) / 1.055).powf(2.4);
     let photo: Vec<_> = (0..12).map(|k| [light(40 + 20 * (k % 4)), light(50 + 30 * (k / 4)), 0.0, 1.0]).collect();
-    // On contexts of their own: what other renderers left on a kept one was seen to spoil these.
     for backend in Backend::ALL {
-        on_own_context(backend, |live| {
+        on_live(backend, |live| {
             live.picture.load(Frame::full(4, 3), &photo).unwrap();
             let screen = Screen::hidden(live.picture.field.device(), [40, 30]).unwrap();
             screen.clear([0.0; 3]);

@@ -79,6 +79,8 @@ fn with_kept<T>(backend: Backend, test: impl FnOnce(&mut Live, &Rc<Device>) -> T
         let device = Device::open(&[backend]).unwrap_or_else(|error| panic!("these tests need GL: {error}"));
         (Live::new(&device).unwrap(), device)
     });
+    // A view shows what was drawn last, if anything was.
+    live.unload();
     let renderer = &mut live.picture;
     renderer.field.forget_scene();
     renderer.field.set_tile_pixels(TILE_PIXELS);
