@@ -18,20 +18,21 @@ pub fn settings(
     scene: &Gathered,
     bright: impl FnOnce(f64) -> [f64; 3],
 ) -> Result<(Settings, Option<String>)> {
-    let mut settings = Settings {
-        strength: look.strength,
-        normalize: look.normalize,
-        emission: Emission::of(photo),
-        ..Settings::default()
-    };
-    if look.mix == Mix::Add {
+    // A new field of a look has to say here whether the composite is told of it. These make ghosts and the plan.
+    #[rustfmt::skip]
+    let &Look {
+        strength, mix, normalize,
+        description: _, lens: _, axis: _, size: _, tint: _, lights: _, ghosts: _, find: _, accuracy: _,
+    } = look;
+    let mut settings = Settings { strength, normalize, emission: Emission::of(photo), ..Settings::default() };
+    if mix == Mix::Add {
         return Ok((settings, None));
     }
-    if look.normalize != Normalize::None {
+    if normalize != Normalize::None {
         return Err(Error::Usage("--mix energy needs --normalize none: only that glare has a light's energy".into()));
     }
     let threshold = scene.found.as_ref().map_or(f64::INFINITY, |found| found.threshold);
-    let (gain, enough) = light_gain(bright(threshold), &scene.ghosts, look.strength);
+    let (gain, enough) = light_gain(bright(threshold), &scene.ghosts, strength);
     settings.threshold = threshold;
     settings.light_gain = gain;
     let warning = (!enough).then(|| {

@@ -6,6 +6,7 @@ mod exchange;
 mod first;
 mod gaussians;
 mod many;
+mod random;
 mod report;
 pub(in crate::laboratory) mod scenes;
 mod stage;
@@ -37,9 +38,9 @@ pub struct Args {
     #[arg(long, value_enum, default_value_t = BackendChoice::Auto)]
     backend: BackendChoice,
 
-    /// The picture's size in pixels
-    #[arg(long, value_name = "WxH", default_value = "1920x1080", value_parser = size)]
-    size: [u32; 2],
+    /// The picture's size in pixels: 1920x1080, or for --scenes from 64 to 1280 wide, by chance
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<[u32; 2]>,
 
     /// How often each thing is measured; made even. By default 10
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=10_000))]
@@ -89,12 +90,16 @@ pub struct Args {
     calibration: CalibrationArgs,
 }
 
+/// The picture's size where none is given.
+const USUAL: [u32; 2] = [1920, 1080];
+
 const EXAMPLES: &str = "\
 Examples:
   vglare bench                              What does a 1080p frame cost here?
   vglare bench --quick --backend osmesa     A quick look at Mesa's software renderer
   vglare bench --size 3840x2160 --csv 4k.csv
   vglare bench --gaussians 1000 --json 1000.json
+  vglare bench --scenes 200 --size 480x270  How good are the plan's choices and its predictions?
   vglare bench --viewer --strict            Are drags in the window fluent here?";
 
 fn part(text: &str) -> Result<f64, String> {
@@ -152,18 +157,19 @@ fn measure(args: &Args, window: Window) -> Result<Report> {
     if let Some(warning) = &known.warning {
         stderr::warn([warning]);
     }
-    let stage = Stage::new(device, args.size, rounds, known.model);
-    let mut report = Report::new(stage.device().info(), args.size, rounds);
+    let size = args.size.unwrap_or(USUAL);
+    let stage = Stage::new(device, size, rounds, known.model);
+    let mut report = Report::new(stage.device().info(), args.size.or_else(|| args.scenes.is_none().then_some(size)), rounds);
     if let Some(count) = args.gaussians {
         gaussians::of_one_size(&stage, &mut report, count as usize, args.sigma, args.tolerance)?;
         return Ok(report);
     }
     if let Some(count) = args.scenes {
-        choices::of_random_scenes(&stage, &mut report, count)?;
+        choices::of_random_scenes(&stage, &mut report, count, args.size)?;
         return Ok(report);
     }
     if args.viewer {
-        window(stage.shared_device(), args.size, &mut report)?;
+        window(stage.shared_device(), size, &mut report)?;
         return Ok(report);
     }
     first::frame(&stage, opened, &mut report)?;
@@ -193,8 +199,8 @@ mod tests {
 
     #[test]
     fn sizes_are_two_sides() {
-        assert_eq!(parsed(&[]).unwrap().size, [1920, 1080]);
-        assert_eq!(parsed(&["--size", "64x36"]).unwrap().size, [64, 36]);
+        assert_eq!(parsed(&[]).unwrap().size, None);
+        assert_eq!(parsed(&["--size", "64x36"]).unwrap().size, Some([64, 36]));
         for bad in ["64", "64x", "x36", "0x36", "64x-1", "64x36x2", "99999x10", "a×b"] {
             assert!(parsed(&["--size", bad]).is_err(), "{bad}");
         }

@@ -14,7 +14,8 @@ use crate::measure::{Ratio, Rounds, Samples};
 pub struct Report {
     vglare: &'static str,
     device: Info,
-    size: [u32; 2],
+    /// None where each scene has its own.
+    size: Option<[u32; 2]>,
     rounds: usize,
     tables: Vec<Table>,
     bars: Vec<Bar>,
@@ -159,8 +160,8 @@ fn short(value: f64) -> String {
 }
 
 impl Report {
-    /// An empty one, of a device, a size in pixels, and how often each thing is measured.
-    pub fn new(device: &Info, size: [u32; 2], rounds: Rounds) -> Self {
+    /// An empty one, of a device, a size in pixels where there is but one, and how often each thing is measured.
+    pub fn new(device: &Info, size: Option<[u32; 2]>, rounds: Rounds) -> Self {
         Self {
             vglare: env!("CARGO_PKG_VERSION"),
             device: device.clone(),
@@ -193,9 +194,9 @@ impl Report {
     /// Those of `out`.
     pub fn print(&self, out: &mut dyn Write) -> io::Result<()> {
         let Info { backend, route, renderer, version, .. } = &self.device;
-        let [width, height] = self.size;
+        let size = self.size.map_or("pictures".to_owned(), |[width, height]| format!("{width} × {height} pixels"));
         writeln!(out, "{renderer}\nOpenGL {version} through {backend} ({route})")?;
-        writeln!(out, "{width} × {height} pixels of RGBA f32, {} rounds in turns, medians", self.rounds)?;
+        writeln!(out, "{size} of RGBA f32, {} rounds in turns, medians", self.rounds)?;
         let gpu = self.tables.iter().flat_map(|table| &table.rows).any(|row| row.gpu_ms.is_some());
         if !gpu {
             writeln!(out, "No timer query to be trusted here: times are of the wall clock, up to glFinish.")?;
@@ -287,7 +288,7 @@ mod tests {
                 shared_memory: 0,
             },
         };
-        let mut report = Report::new(&device, [64, 36], Rounds::new(0, 2));
+        let mut report = Report::new(&device, Some([64, 36]), Rounds::new(0, 2));
         let mut table = Table::new("A frame, in parts", "copy");
         let copy = [2.0, 4.0].into_iter().collect();
         table.row("copy", &copy, None);

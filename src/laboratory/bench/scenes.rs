@@ -3,7 +3,6 @@
 use glam::DVec2;
 
 use crate::Result;
-use crate::chance::Chance;
 use crate::frame::Frame;
 use crate::scene::presets::{self, DEFAULT_PRESET};
 use crate::scene::{Ghost, Light, ghosts};
@@ -39,35 +38,4 @@ pub(in crate::laboratory) fn scattered(count: usize, smallest: f64, frame: Frame
 pub(super) fn alike(count: usize, size: f64, frame: Frame) -> Vec<Ghost> {
     let resized = |ghost: Ghost| Ghost { center: ghost.center / 1.1, size: DVec2::splat(size), ..ghost };
     scattered(count, size, frame).into_iter().map(resized).collect()
-}
-
-/// A picture with Gaussians, and a tolerance.
-pub(super) struct Random {
-    pub frame: Frame,
-    pub ghosts: Vec<Ghost>,
-    pub tolerance: f64,
-}
-
-/// A picture 64 to 1280 pixels wide, 1 to 2000 ghosts of sizes within a factor of 6, somewhere in and around it, and a
-/// tolerance from 1e-4 to 1e-1; every octave as likely.
-pub(super) fn random(seed: u64) -> Random {
-    let mut chance = Chance::new(seed);
-    let octaves = |chance: &mut Chance, low: f64, high: f64| chance.between(low.ln(), high.ln()).exp();
-    let width = octaves(&mut chance, 64.0, 1280.0);
-    let frame = Frame::full(width as u32, (width / chance.between(0.7, 2.4)).max(1.0) as u32);
-    let count = octaves(&mut chance, 1.0, 2000.0) as usize;
-    let tolerance = octaves(&mut chance, 1e-4, 1e-1);
-    let smallest = octaves(&mut chance, 0.02, 0.5);
-    let largest = smallest * octaves(&mut chance, 1.0, 6.0);
-    let half = 1.2 * DVec2::new(f64::from(frame.width) / f64::from(frame.height), 1.0);
-    let mut ghost = |_| {
-        let size = octaves(&mut chance, smallest, largest);
-        Ghost {
-            bell: Bell::Gaussian,
-            center: DVec2::new(chance.between(-half.x, half.x), chance.between(-half.y, half.y)),
-            size: DVec2::new(size, size * chance.between(0.7, 1.0)),
-            radiance: [0, 1, 2].map(|_| octaves(&mut chance, 0.05, 1.0)),
-        }
-    };
-    Random { frame, ghosts: (0..count).map(&mut ghost).collect(), tolerance }
 }
