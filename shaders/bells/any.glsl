@@ -1,4 +1,4 @@
-// Every bell, for scenes that have several kinds.
+// Every bell, each by its name, for scenes that have several kinds.
 
 #define bell_coefficient gaussian_coefficient
 #define bell_value gaussian
@@ -28,6 +28,16 @@
 #include "bells/profile.glsl"
 #undef bell_value
 
+// RUN(kind, function) for each of them, in the order of the registry.
+#define EACH_BELL(RUN) \
+    RUN(0, gaussian) \
+    RUN(1, cosine_squared) \
+    RUN(2, parabola) \
+    RUN(3, paraboloid) \
+    RUN(4, von_mises) \
+    RUN(5, sine_gaussian) \
+    RUN(6, profile)
+
 #ifdef DOUBLE
 #define real double
 #define reals dvec2
@@ -36,7 +46,8 @@
 #define reals vec2
 #endif
 
-// The kind, in the order of the registry, is in the highest 8 bits; the size as the bells take it.
+// For where there is no list of each kind: the kind, in the order of the registry, is in the highest 8 bits of `bell`; the
+// size as the bells take it. Mesa's software renderer computes all of them, whatever the kind.
 real bell_value(reals offset, reals size, uint bell) {
     uint shape = bell & 0xffffffu;
     switch (bell >> 24) {

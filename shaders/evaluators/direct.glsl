@@ -5,7 +5,7 @@ struct Ghost {
     vec2 center;
     vec2 inverse_size;
     float red, green, blue; // radiance
-    uint bell;              // where its parameters begin, and its kind where there are several
+    uint bell;              // where its parameters begin
 };
 #ifdef MANY_GHOSTS
 layout(std430, binding = BINDING_GHOSTS) readonly buffer Ghosts {
@@ -25,30 +25,42 @@ const uint STEP = 1u;
 layout(std140, binding = BINDING_DIRECT) uniform Direct {
     ivec2 corner;   // of the tile, in pixels of the picture
     ivec2 size;     // of the picture, in pixels
-    uint ghost_count; // a multiple of STEP; the last ones may have no weight
+    uint ghost_count; // a multiple of STEP; the last ones of each kind may have no weight
     vec2 unit;      // half a pixel's width and height: the pixels' aspect, and 1, over the picture's height
+    uvec4 aspect;   // of `direct_double`
+    uvec4 runs[DIRECT_RUNS / 4]; // where the ghosts of each kind of bell begin, and where the last of them end
 };
+
+// Adds the ghosts of one bell. A loop for each: where a bell were chosen for each ghost, Mesa's software renderer would
+// compute all of them for every one. Batches are summed with what each addition lost (Kahan), so that rounding does not grow
+// with K.
+#define SUM(bell_of, begin, end) \
+    for (uint base = begin; base < end; base += DIRECT_BATCH) { \
+        vec3 batch = vec3(0.0); \
+        uint last = min(base + DIRECT_BATCH, end); \
+        for (uint first = base; first < last; first += STEP) { \
+            for (uint k = 0u; k < STEP; ++k) { \
+                Ghost ghost = ghosts[first + k]; \
+                vec3 weight = vec3(ghost.red, ghost.green, ghost.blue); \
+                batch += weight * bell_of(position - ghost.center, ghost.inverse_size, ghost.bell); \
+            } \
+        } \
+        precise vec3 addend = batch - lost; \
+        precise vec3 next = sum + addend; \
+        lost = (next - sum) - addend; \
+        sum = next; \
+    }
+#define RUN(kind, bell_of) SUM(bell_of, runs[kind / 4][kind % 4], runs[(kind + 1) / 4][(kind + 1) % 4])
 
 vec3 glare(ivec2 pixel) {
     ivec2 p = corner + pixel;
     // Integers up to the product, which GLSL rounds correctly as it need not a quotient: two roundings in all.
     vec2 position = vec2(ivec2(2 * p.x + 1 - size.x, size.y - 2 * p.y - 1)) * unit;
-    // Batches are summed with what each addition lost (Kahan), so that rounding does not grow with K.
     precise vec3 sum = vec3(0.0), lost = vec3(0.0);
-    for (uint base = 0u; base < ghost_count; base += DIRECT_BATCH) {
-        vec3 batch = vec3(0.0);
-        uint last = min(base + DIRECT_BATCH, ghost_count);
-        for (uint first = base; first < last; first += STEP) {
-            for (uint k = 0u; k < STEP; ++k) {
-                Ghost ghost = ghosts[first + k];
-                vec3 weight = vec3(ghost.red, ghost.green, ghost.blue);
-                batch += weight * bell_value(position - ghost.center, ghost.inverse_size, ghost.bell);
-            }
-        }
-        precise vec3 addend = batch - lost;
-        precise vec3 next = sum + addend;
-        lost = (next - sum) - addend;
-        sum = next;
-    }
+#ifdef EACH_BELL
+    EACH_BELL(RUN)
+#else
+    SUM(bell_value, 0u, ghost_count)
+#endif
     return sum;
 }

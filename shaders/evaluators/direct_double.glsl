@@ -7,7 +7,7 @@ struct Ghost {
     dvec2 center;
     dvec2 size;
     double red, green, blue; // radiance
-    uint bell;               // where its parameters begin, and its kind where there are several
+    uint bell;               // where its parameters begin
     uint pad;
 };
 // As in `direct`, with half as many that fit 64 KiB.
@@ -25,28 +25,38 @@ const uint STEP = 1u;
 layout(std140, binding = BINDING_DIRECT) uniform Direct {
     ivec2 corner;   // of the tile, in pixels of the picture
     ivec2 size;     // of the picture, in pixels
-    uint ghost_count; // a multiple of STEP; the last ones may have no weight
+    uint ghost_count; // a multiple of STEP; the last ones of each kind may have no weight
     vec2 unit;      // of `direct`
     double aspect;  // a pixel's width over its height
+    uvec4 runs[DIRECT_RUNS / 4]; // where the ghosts of each kind of bell begin, and where the last of them end
 };
+
+// Adds the ghosts of one bell, as in `direct`.
+#define SUM(bell_of, begin, end) \
+    for (uint base = begin; base < end; base += DIRECT_BATCH) { \
+        uint last = min(base + DIRECT_BATCH, end); \
+        for (uint first = base; first < last; first += STEP) { \
+            for (uint k = 0u; k < STEP; ++k) { \
+                Ghost ghost = ghosts[first + k]; \
+                precise dvec2 offset = dvec2(x, y) - ghost.center; \
+                double value = bell_of(offset, ghost.size, ghost.bell); \
+                red += ghost.red * value; \
+                green += ghost.green * value; \
+                blue += ghost.blue * value; \
+            } \
+        } \
+    }
+#define RUN(kind, bell_of) SUM(bell_of, runs[kind / 4][kind % 4], runs[(kind + 1) / 4][(kind + 1) % 4])
 
 vec3 glare(ivec2 pixel) {
     ivec2 p = corner + pixel;
     precise double x = aspect * double(2 * p.x + 1 - size.x) / double(size.y);
     precise double y = double(size.y - 2 * p.y - 1) / double(size.y);
     double red = 0.0lf, green = 0.0lf, blue = 0.0lf;
-    for (uint base = 0u; base < ghost_count; base += DIRECT_BATCH) {
-        uint last = min(base + DIRECT_BATCH, ghost_count);
-        for (uint first = base; first < last; first += STEP) {
-            for (uint k = 0u; k < STEP; ++k) {
-                Ghost ghost = ghosts[first + k];
-                precise dvec2 offset = dvec2(x, y) - ghost.center;
-                double value = bell_value(offset, ghost.size, ghost.bell);
-                red += ghost.red * value;
-                green += ghost.green * value;
-                blue += ghost.blue * value;
-            }
-        }
-    }
+#ifdef EACH_BELL
+    EACH_BELL(RUN)
+#else
+    SUM(bell_value, 0u, ghost_count)
+#endif
     return vec3(red, green, blue);
 }

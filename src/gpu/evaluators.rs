@@ -1,11 +1,12 @@
 //! The four ways to the field. Each readies what its GLSL function `glare(pixel)` reads for one tile of the picture;
 //! `field`, `composite` and `probe` then include that function.
 
-use bytemuck::Pod;
+use bytemuck::{Pod, Zeroable};
 
 use super::harmonics::Harmonics;
 use super::layout::{
     CELLS, DIRECT, EVALUATOR, FEW_GHOSTS, GHOSTS, HARMONICS_X, HARMONICS_Y, Knots, LATTICE, PROFILES, SHAPES, STRIPS,
+    SummedGhost,
 };
 use super::resource::{Buffer, Scratch, Texel};
 use super::runner::Runner;
@@ -17,6 +18,8 @@ use crate::{Error, Result};
 pub(super) const STEP: usize = 8;
 /// And this many before what is lost of their sum is made up for.
 pub(super) const BATCH: usize = 64;
+/// Kinds of bells, and one more for the end of the last, in whole `uvec4`.
+pub(super) const RUNS: usize = 16;
 /// What a uniform block must hold for the ghosts that fit one.
 pub(super) const FEW_BYTES: u32 = 64 << 10;
 
@@ -35,6 +38,19 @@ pub(crate) struct LatticeTile<'a> {
     pub height: u32,
 }
 
+/// The uniforms of `direct`, as its shaders have them.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Direct {
+    corner: [i32; 2],
+    size: [i32; 2],
+    count: u32,
+    pad: u32,
+    unit: [f32; 2],
+    aspect: [f64; 2],
+    runs: [u32; RUNS],
+}
+
 /// What the evaluators keep from frame to frame.
 pub(crate) struct Evaluators {
     harmonics_x: Harmonics,
@@ -46,8 +62,9 @@ pub(crate) struct Evaluators {
     knots: Buffer<Knots>,
     ghosts: Buffer<Words>,
     shapes: Buffer<Words>,
-    direct: Buffer<[i32; 12]>,
-    ghost_count: usize,
+    direct: Buffer<Direct>,
+    /// Where the ghosts of each kind of bell begin, and where the last of them end.
+    runs: [u32; RUNS],
     many: bool,
 }
 
@@ -66,26 +83,40 @@ impl Evaluators {
             ghosts: Buffer::new(device, FEW_BYTES as usize / size_of::<Words>())?,
             shapes: Buffer::new(device, 0)?,
             direct: Buffer::new(device, 1)?,
-            ghost_count: 0,
+            runs: [0; RUNS],
             many: false,
         })
     }
 
-    /// Uploads the ghosts that `direct` sums, and what their bells need to know beside: in 32-bit floats or in 64. `none` is
-    /// a ghost without weight, finite at every pixel.
+    /// Uploads the ghosts that `direct` sums, one list for each kind of bell in the order of the registry, and what their
+    /// bells need to know beside: in 32-bit floats or in 64.
     ///
     /// # Errors
     /// [`Error::Gl`] where they are more than the software renderer goes through for one pixel.
-    pub fn set_ghosts<G: Pod, S: Pod>(&mut self, runner: &Runner, ghosts: &[G], none: G, shapes: &[S]) -> Result<()> {
+    pub fn set_ghosts<G: SummedGhost, S: Pod>(
+        &mut self,
+        runner: &Runner,
+        ghosts: &[Vec<G>],
+        shapes: &[S],
+    ) -> Result<()> {
         let few = FEW_BYTES as usize / size_of::<G>();
-        self.many = ghosts.len() > few || runner.device().info().limits.uniform_block < FEW_BYTES;
-        // Such ghosts fill the last round.
+        let count = ghosts.iter().map(Vec::len).sum();
+        self.many = count > few || runner.device().info().limits.uniform_block < FEW_BYTES;
+        // Ghosts without weight fill the last round of each kind.
         let step = if self.many { STEP } else { 1 };
-        let mut padded = ghosts.to_vec();
-        padded.resize(ghosts.len().next_multiple_of(step), none);
-        let rounds = padded.len() / step + padded.len().div_ceil(BATCH);
-        within_rounds(runner, rounds, "direct", ghosts.len(), "ghosts")?;
-        self.ghost_count = padded.len();
+        let (mut padded, mut rounds) = (Vec::with_capacity(count + step * ghosts.len()), 0);
+        self.runs = [0; RUNS];
+        for (kind, ghosts) in ghosts.iter().enumerate() {
+            let before = padded.len();
+            padded.extend_from_slice(ghosts);
+            if let Some(last) = ghosts.last() {
+                padded.resize(padded.len().next_multiple_of(step), last.without_weight());
+            }
+            self.runs[kind + 1..].fill(padded.len() as u32);
+            let mine = padded.len() - before;
+            rounds += mine / step + mine.div_ceil(BATCH);
+        }
+        within_rounds(runner, rounds, "direct", count, "ghosts")?;
         self.shapes.store(bytemuck::cast_slice(shapes))?;
         self.ghosts.store(bytemuck::cast_slice(&padded))
     }
@@ -93,11 +124,9 @@ impl Evaluators {
     /// Readies `direct` for a tile whose first pixel is `corner` in the picture of a frame.
     pub fn direct(&mut self, corner: [i32; 2], frame: Frame) -> Result<()> {
         let size = [frame.width as i32, frame.height as i32];
-        let [x, y] = (0.5 * frame.pixel_sides()).to_array().map(|half| (half as f32).to_bits() as i32);
-        let count = self.ghost_count as i32;
-        let aspect = frame.pixel_aspect.to_bits();
-        let [low, high] = [aspect as u32 as i32, (aspect >> 32) as i32];
-        self.direct.store(&[[corner[0], corner[1], size[0], size[1], count, 0, x, y, low, high, 0, 0]])?;
+        let unit = (0.5 * frame.pixel_sides()).to_array().map(|half| half as f32);
+        let (count, aspect) = (self.runs[RUNS - 1], [frame.pixel_aspect, 0.0]);
+        self.direct.store(&[Direct { corner, size, count, pad: 0, unit, aspect, runs: self.runs }])?;
         self.direct.bind_uniform(DIRECT);
         if self.many {
             self.ghosts.bind_storage(GHOSTS);

@@ -90,10 +90,11 @@ pub(crate) const BINDINGS: [Binding; 29] = [
 
 /// Numbers that passes and their shaders have to agree on, for the head of every shader: work groups, and what is done in
 /// one round of a loop.
-pub(crate) const NUMBERS: [Binding; 10] = [
+pub(crate) const NUMBERS: [Binding; 11] = [
     ("DIRECT_STEP", super::evaluators::STEP as u32),
     ("DIRECT_BATCH", super::evaluators::BATCH as u32),
     ("DIRECT_FEW_BYTES", super::evaluators::FEW_BYTES),
+    ("DIRECT_RUNS", super::evaluators::RUNS as u32),
     ("SPECTRUM_TILE", super::spectrum::TILE),
     ("SPECTRUM_MINE", super::spectrum::MINE),
     ("SPECTRUM_ROWS", super::spectrum::TILE / super::spectrum::MINE),
@@ -127,7 +128,7 @@ pub(crate) struct DirectGhost {
     pub inverse_size: [f32; 2],
     /// Radiance, per colour in units of the field's scale.
     pub weight: [f32; 3],
-    /// Where its bell's parameters begin; the bell's kind in the highest 8 bits, where there are several.
+    /// Where its bell's parameters begin.
     pub bell: u32,
 }
 const _: () = assert!(size_of::<DirectGhost>() == 32);
@@ -147,14 +148,22 @@ pub(crate) struct DoubleGhost {
 }
 const _: () = assert!(size_of::<DoubleGhost>() == 64);
 
-impl DirectGhost {
-    /// None at all.
-    pub const NONE: Self = Self { center: [0.0; 2], inverse_size: [0.0; 2], weight: [0.0; 3], bell: 0 };
+/// A ghost of either.
+pub(crate) trait SummedGhost: Pod {
+    /// The same, so that it adds nothing.
+    fn without_weight(&self) -> Self;
 }
 
-impl DoubleGhost {
-    /// None at all; of size 0 it would be 0 / 0 at its centre.
-    pub const NONE: Self = Self { center: [0.0; 2], size: [1.0; 2], weight: [0.0; 3], bell: 0, pad: 0 };
+impl SummedGhost for DirectGhost {
+    fn without_weight(&self) -> Self {
+        Self { weight: [0.0; 3], ..*self }
+    }
+}
+
+impl SummedGhost for DoubleGhost {
+    fn without_weight(&self) -> Self {
+        Self { weight: [0.0; 3], ..*self }
+    }
 }
 
 /// Where the pixels along one axis lie between the lattice's nodes: pixel i at `start + i * pitch`, counted in 2⁻²⁰ of a

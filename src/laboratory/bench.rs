@@ -159,7 +159,8 @@ fn measure(args: &Args, window: Window) -> Result<Report> {
     }
     let size = args.size.unwrap_or(USUAL);
     let stage = Stage::new(device, size, rounds, known.model);
-    let mut report = Report::new(stage.device().info(), args.size.or_else(|| args.scenes.is_none().then_some(size)), rounds);
+    let mut report =
+        Report::new(stage.device().info(), args.size.or_else(|| args.scenes.is_none().then_some(size)), rounds);
     if let Some(count) = args.gaussians {
         gaussians::of_one_size(&stage, &mut report, count as usize, args.sigma, args.tolerance)?;
         return Ok(report);

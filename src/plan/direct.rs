@@ -24,17 +24,6 @@ pub enum Precision {
     Double,
 }
 
-impl Precision {
-    /// How many times as long as in 32 bits a bell takes on llvmpipe, which does half as many 64-bit floats at a time and
-    /// has no exponential of them.
-    pub(super) fn slower(self) -> f64 {
-        match self {
-            Self::Single => 1.0,
-            Self::Double => 5.0,
-        }
-    }
-}
-
 /// What the direct sum is off by at any pixel, at most, in the floats of either precision.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Bounds {

@@ -119,10 +119,19 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
         found.take(Evaluator::Direct, candidate(problem, &survey, None, request, Evaluator::Direct));
     }
     found.bound(&survey);
+    // The cheapest of them, more often than not, first. What cannot be cheaper is not planned, unless it was asked for.
+    let least = |evaluator| cost::least(evaluator, problem.frame(), &request.cost_model);
+    let (others, dear): (Vec<Evaluator>, Vec<Evaluator>) = [Evaluator::Grid, Evaluator::Rows, Evaluator::Series]
+        .into_iter()
+        .filter(wanted)
+        .partition(|&evaluator| request.evaluator.is_some() || least(evaluator) < found.least());
+    for evaluator in dear {
+        found.take(evaluator, Err(Error::Plan(format!("the passes of {evaluator} alone would take longer"))));
+    }
+    if others.is_empty() {
+        return Ok(found.cheapest());
+    }
     let wide = Wide::new(problem, &survey, request);
-    // The cheapest of them, more often than not, first.
-    let others = [Evaluator::Grid, Evaluator::Rows, Evaluator::Series].into_iter().filter(wanted);
-    let others: Vec<Evaluator> = others.collect();
     for &evaluator in &others {
         let plan = candidate(problem, &survey, wide.as_ref(), request, evaluator).and_then(|plan| {
             // In the period that periodic bells bring with them the copies of others may land on the picture.
@@ -163,6 +172,11 @@ impl Found {
     /// Lets the rest of planning cost no more than a part of the cheapest of the plans.
     fn bound(&self, survey: &Survey) {
         self.plans.iter().filter_map(Plan::cost).for_each(|milliseconds| survey.effort.beside(milliseconds));
+    }
+
+    /// What the cheapest of the plans is expected to take, in milliseconds.
+    fn least(&self) -> f64 {
+        self.plans.iter().filter_map(Plan::cost).fold(f64::INFINITY, f64::min)
     }
 
     fn cheapest(self) -> std::result::Result<Plan, Vec<Error>> {

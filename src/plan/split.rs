@@ -5,7 +5,7 @@ use glam::DVec2;
 use super::candidate::Survey;
 use super::decay::Decay;
 use super::weigh::Weighed;
-use super::{CostModel, Evaluator, Group, Request, Transform, cost, direct, gather, period, share};
+use super::{CostModel, Evaluator, Group, Precision, Request, Transform, cost, direct, gather, period, share};
 use crate::frame::Frame;
 use crate::problem::Problem;
 
@@ -81,7 +81,7 @@ fn neediest(survey: &Survey, frame: Frame, request: &Request) -> Option<Vec<usiz
     order.sort_by_key(|&index| std::cmp::Reverse(terms(index)));
     let estimate = |moved: usize| -> Option<f64> {
         let (summed, left) = order.split_at(moved);
-        let summed: usize = summed.iter().map(|&index| groups[index].ghosts).sum();
+        let summed = cost::direct(summed.iter().map(|&index| &groups[index]), Precision::Single, frame, model);
         let mut counts = vec![1u32];
         for &index in left {
             let needed = needs[index].as_ref()?;
@@ -94,7 +94,7 @@ fn neediest(survey: &Survey, frame: Frame, request: &Request) -> Option<Vec<usiz
             let needed = needs[index].as_ref().map_or([0; 2], |counts| [counts.len() as u32 - 1, counts[0] - 1]);
             gather::cost(&Group { degree: needed, ..groups[index].clone() }, &Transform::Dispatch, model)
         });
-        Some(series.sum::<f64>() + cheapest_field(&counts, period, frame, model) + cost::direct(summed, frame, model))
+        Some(series.sum::<f64>() + cheapest_field(&counts, period, frame, model) + summed)
     };
     let most = order.iter().scan(0, |sum, &index| {
         *sum += groups[index].ghosts;
@@ -102,7 +102,7 @@ fn neediest(survey: &Survey, frame: Frame, request: &Request) -> Option<Vec<usiz
     });
     // The last group stays: all of them are `direct` itself.
     let most = most.count().min(groups.len() - 1);
-    let direct = cost::direct(groups.iter().map(|group| group.ghosts).sum(), frame, model);
+    let direct = cost::direct(groups, Precision::Single, frame, model);
     let whole = estimate(0).map_or(direct, |series| series.min(direct));
     let costs = (1..=most).filter_map(|moved| Some((estimate(moved)?, moved)));
     let (least, moved) = costs.min_by(|a, b| a.0.total_cmp(&b.0))?;

@@ -84,13 +84,16 @@ pub(super) fn gathered(plan: &Plan, period: DVec2, group: &Group, cells: &Cells)
     cells.sums(group.members.len(), point, group.degree)
 }
 
-/// The ghosts that the plan sums directly, as the shader takes them, and the parameters of their bells.
-pub(super) fn direct_ghosts<G>(plan: &Plan, convert: impl Fn(&Ghost, [f64; 3], u32) -> G) -> (Vec<G>, Vec<[f64; 4]>) {
-    let several = one_kind(plan).is_none();
+/// The ghosts that the plan sums directly, as the shader takes them, a list for each kind of bell; and the parameters of their
+/// bells.
+pub(super) fn direct_ghosts<G>(
+    plan: &Plan,
+    convert: impl Fn(&Ghost, [f64; 3], u32) -> G,
+) -> (Vec<Vec<G>>, Vec<[f64; 4]>) {
     let mut shapes = Vec::new();
     // Where the parameters of the bells begin; there are only ever a few that have any.
     let mut begins: Vec<(&Bell, u32)> = Vec::new();
-    let mut direct = Vec::with_capacity(plan.summed());
+    let mut direct: Vec<Vec<G>> = Vec::new();
     for group in plan.summed_groups() {
         let begin = match begins.iter().find(|(bell, _)| *bell == &group.bell) {
             Some(&(_, begin)) => begin,
@@ -101,10 +104,11 @@ pub(super) fn direct_ghosts<G>(plan: &Plan, convert: impl Fn(&Ghost, [f64; 3], u
                 begin
             }
         };
-        let bell = begin | if several { group.bell.kind() << 24 } else { 0 };
-        direct.extend(group.members.iter().map(|&index| {
+        let kind = group.bell.kind() as usize;
+        direct.resize_with(direct.len().max(kind + 1), Vec::new);
+        direct[kind].extend(group.members.iter().map(|&index| {
             let ghost = &plan.problem().ghosts()[index as usize];
-            convert(ghost, weight(ghost, plan), bell)
+            convert(ghost, weight(ghost, plan), begin)
         }));
     }
     (direct, shapes)

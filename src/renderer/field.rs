@@ -6,7 +6,6 @@ use super::{convert, tiles};
 use crate::frame::{Frame, Window};
 use crate::gpu::evaluators::Evaluators;
 use crate::gpu::field::{FieldPass, Source};
-use crate::gpu::layout::{DirectGhost, DoubleGhost};
 use crate::gpu::range::RangePass;
 use crate::gpu::runner::Runner;
 use crate::gpu::spectrum::{Coefficients, Ghosts, Spectrum, SpectrumGroup};
@@ -73,11 +72,11 @@ impl Field {
     fn upload_summed(&mut self, plan: &Plan) -> Result<()> {
         if plan.precision == Precision::Double {
             let (direct, shapes) = convert::direct_ghosts(plan, convert::double_ghost);
-            return self.evaluators.set_ghosts(&self.runner, &direct, DoubleGhost::NONE, &shapes);
+            return self.evaluators.set_ghosts(&self.runner, &direct, &shapes);
         }
         let (direct, shapes) = convert::direct_ghosts(plan, convert::single_ghost);
         let single: Vec<[f32; 4]> = shapes.iter().map(|row| row.map(|x| x as f32)).collect();
-        self.evaluators.set_ghosts(&self.runner, &direct, DirectGhost::NONE, &single)
+        self.evaluators.set_ghosts(&self.runner, &direct, &single)
     }
 
     fn compute_spectrum(&mut self, plan: &Plan, series: &Series) -> Result<()> {

@@ -52,12 +52,7 @@ struct Outcome {
 }
 
 /// Plans random scenes, of one size if it is given, and renders each by every evaluator that is not hopeless.
-pub(super) fn of_random_scenes(
-    stage: &Stage,
-    report: &mut Report,
-    count: u32,
-    size: Option<[u32; 2]>,
-) -> Result<()> {
+pub(super) fn of_random_scenes(stage: &Stage, report: &mut Report, count: u32, size: Option<[u32; 2]>) -> Result<()> {
     let progress = Progress::start(false);
     progress.say("random scenes");
     progress.measured(count as usize);
@@ -99,7 +94,11 @@ fn bars(outcomes: &[Outcome], report: &mut Report) {
     let good = per_cent(&|outcome| outcome.over.of_medians <= GOOD);
     let quick = per_cent(&|outcome| outcome.slow_planning() <= 1.0);
     report.bar(format!("% of choices within {GOOD} times the fastest"), Target::AtLeast(MOSTLY), good);
-    report.bar("% with measured <= predicted <= asked", Target::AtLeast(100.0), per_cent(&|outcome| outcome.broken.is_empty()));
+    report.bar(
+        "% with measured <= predicted <= asked",
+        Target::AtLeast(100.0),
+        per_cent(&|outcome| outcome.broken.is_empty()),
+    );
     report.bar("predicted / measured, at the median", Target::AtMost(LOOSE), ratios(outcomes, None).median());
     let floors: Vec<f64> = outcomes.iter().filter_map(|outcome| Some(outcome.floor? / outcome.measured)).collect();
     if !floors.is_empty() {
@@ -144,9 +143,8 @@ fn outcome(stage: &Stage, seed: u64, size: Option<[u32; 2]>) -> Result<Outcome> 
     })?;
     let times: Vec<Samples> = times.into_iter().map(|times| times.into_iter().collect()).collect();
     let fastest = (0..times.len()).min_by(|&a, &b| times[a].median().total_cmp(&times[b].median())).unwrap_or_default();
-    let certificates = actors.iter_mut().zip(&plans).map(|(actor, plan)| {
-        Certificate::measure(&mut actor.renderer().field, plan)
-    });
+    let certificates =
+        actors.iter_mut().zip(&plans).map(|(actor, plan)| Certificate::measure(&mut actor.renderer().field, plan));
     let certificates = certificates.collect::<Result<Vec<Certificate>>>()?;
     let count = problem.ghosts().len();
     let asked = chosen.tolerance;
