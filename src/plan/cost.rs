@@ -29,6 +29,16 @@ pub struct CostModel {
     /// One moment of one ghost, where a group's spectrum is gathered. Calibrations from before there were moments lack it.
     #[serde(default = "built_in_moment")]
     pub moment: f64,
+    /// One bell at one pixel that it reaches, by `local`. Calibrations from before there was `local` lack this, and the two
+    /// that follow.
+    #[serde(default = "built_in_splat")]
+    pub splat: f64,
+    /// One ghost that is drawn where it reaches, by `local`.
+    #[serde(default = "built_in_quad")]
+    pub quad: f64,
+    /// One pixel of what they are drawn on, by `local`.
+    #[serde(default = "built_in_canvas")]
+    pub canvas: f64,
     /// Starting a pass.
     pub pass: f64,
 }
@@ -44,6 +54,9 @@ impl Default for CostModel {
             interpolation: 8.5,
             spectrum: 8.0,
             moment: built_in_moment(),
+            splat: built_in_splat(),
+            quad: built_in_quad(),
+            canvas: built_in_canvas(),
             pass: 130_000.0,
         }
     }
@@ -54,24 +67,50 @@ fn built_in_moment() -> f64 {
     0.8
 }
 
+/// Of these three: 250 to 2500 Gaussians of 2 and of 10 pixels.
+fn built_in_splat() -> f64 {
+    2.8
+}
+
+fn built_in_quad() -> f64 {
+    650.0
+}
+
+fn built_in_canvas() -> f64 {
+    5.0
+}
+
 impl CostModel {
     /// How many constants there are.
-    pub const COUNT: usize = 9;
+    pub const COUNT: usize = 12;
 
     /// The constants' names, in the order of [`CostModel::values`].
-    pub const NAMES: [&'static str; Self::COUNT] =
-        ["bell", "term", "harmonic", "profile", "strip", "interpolation", "spectrum", "moment", "pass"];
+    pub const NAMES: [&'static str; Self::COUNT] = [
+        "bell",
+        "term",
+        "harmonic",
+        "profile",
+        "strip",
+        "interpolation",
+        "spectrum",
+        "moment",
+        "splat",
+        "quad",
+        "canvas",
+        "pass",
+    ];
 
     /// The constants in nanoseconds, in the order of [`CostModel::NAMES`].
     pub fn values(&self) -> [f64; Self::COUNT] {
-        let &Self { bell, term, harmonic, profile, strip, interpolation, spectrum, moment, pass } = self;
-        [bell, term, harmonic, profile, strip, interpolation, spectrum, moment, pass]
+        let &Self { bell, term, harmonic, profile, strip, interpolation, spectrum, moment, splat, quad, canvas, pass } =
+            self;
+        [bell, term, harmonic, profile, strip, interpolation, spectrum, moment, splat, quad, canvas, pass]
     }
 
     /// The constants from nanoseconds, in the order of [`CostModel::NAMES`].
     pub fn from_values(values: [f64; Self::COUNT]) -> Self {
-        let [bell, term, harmonic, profile, strip, interpolation, spectrum, moment, pass] = values;
-        Self { bell, term, harmonic, profile, strip, interpolation, spectrum, moment, pass }
+        let [bell, term, harmonic, profile, strip, interpolation, spectrum, moment, splat, quad, canvas, pass] = values;
+        Self { bell, term, harmonic, profile, strip, interpolation, spectrum, moment, splat, quad, canvas, pass }
     }
 
     /// Whether every constant is what a time can be: finite and above 0.
@@ -95,13 +134,17 @@ pub struct Cost {
 pub(super) fn estimate(layers: &[Layer], precision: Precision, frame: Frame, model: &CostModel) -> Cost {
     let summed = |layer: &Layer| match layer {
         Layer::Direct(groups) => groups.iter().map(|group| group.ghosts).sum(),
-        Layer::Series(_) => 0,
+        Layer::Series(_) | Layer::Local(_) => 0,
     };
     let sum = |layer: &Layer| direct(summed(layer), frame, model) * precision.slower();
     let one = |layer: &Layer| match layer {
         Layer::Direct(_) if layers.len() == 1 => sum(layer) + model.pass,
         // Beside a series it is no pass of its own.
         Layer::Direct(_) => sum(layer),
+        Layer::Local(layer) => {
+            let ghosts = layer.groups.iter().map(|group| group.ghosts).sum();
+            local(ghosts, layer.reached, layer.precision, frame, model)
+        }
         Layer::Series(series) => {
             let spectrum: f64 = series.groups.iter().map(|group| gather::cost(group, &group.transform, model)).sum();
             spectrum + field(series.evaluator, &Size::of(series), frame, model)
@@ -138,7 +181,7 @@ pub(super) fn field(evaluator: Evaluator, size: &Size, frame: Frame, model: &Cos
         rows * size.terms * model.profile + rows * columns * f64::from(size.degree[0] + 1) * model.harmonic
     };
     match evaluator {
-        Evaluator::Direct => 0.0,
+        Evaluator::Direct | Evaluator::Local => 0.0,
         Evaluator::Series => pixels * size.terms * model.term + 4.0 * model.pass,
         Evaluator::Rows => rows(f64::from(window.height), f64::from(window.width)) + 5.0 * model.pass,
         Evaluator::Grid => {
@@ -154,6 +197,23 @@ pub(super) fn direct(ghosts: usize, frame: Frame, model: &CostModel) -> f64 {
     let bells = ghosts as f64 * slower(ghosts) + AROUND_BELLS;
     frame.window.pixels() as f64 * bells * model.bell
 }
+
+/// What drawing ghosts where they reach so many pixels in all costs, in nanoseconds.
+pub(super) fn local(ghosts: usize, reached: f64, precision: Precision, frame: Frame, model: &CostModel) -> f64 {
+    let canvas = frame.window.pixels() as f64 * model.canvas + 2.0 * model.pass;
+    match precision {
+        Precision::Single => ghosts as f64 * model.quad + reached * model.splat + canvas,
+        // Lists of the ghosts of each block of pixels, as `direct` sums many; blocks reach beyond the ghosts.
+        Precision::Double => {
+            let blocks =
+                ghosts as f64 * model.quad + LISTED * reached * model.bell * slower(usize::MAX) * precision.slower();
+            blocks + canvas
+        }
+    }
+}
+
+/// Pixels of the blocks that a ghost is listed in, for each that it reaches.
+const LISTED: f64 = 2.5;
 
 /// What `direct` does at a pixel beside its bells, in bells: 2 to 3 on llvmpipe, for 1 to 6 ghosts.
 const AROUND_BELLS: f64 = 2.5;

@@ -15,6 +15,7 @@ mod floor;
 mod gather;
 mod lattice;
 mod layer;
+mod local;
 mod modes;
 mod period;
 mod prediction;
@@ -43,6 +44,8 @@ pub use direct::Precision;
 pub use gather::Transform;
 pub use lattice::{Lattice, MOST_NODES};
 pub use layer::{Layer, Series};
+pub use local::Local;
+pub(crate) use local::{Area, LARGEST_POINT};
 pub use modes::{Mode, Modes};
 pub use prediction::{Prediction, Source};
 pub use request::Request;
@@ -111,7 +114,7 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
     let given = series || (asked.period.is_some() && asked.evaluator.is_some());
     let wanted = |evaluator: &Evaluator| match request.evaluator {
         Some(only) => only == *evaluator,
-        None => !(series && *evaluator == Evaluator::Direct),
+        None => !series || evaluator.is_series(),
     };
     let mut found = Found::default();
     // The direct sum costs next to nothing to plan, and what it would take bounds what planning the others may.
@@ -119,6 +122,14 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
         found.take(Evaluator::Direct, candidate(problem, &survey, None, request, Evaluator::Direct));
     }
     found.bound(&survey);
+    // What reaches few pixels is as soon planned; where it is not, the others come first.
+    let mut local = wanted(&Evaluator::Local);
+    let (least, work) = local::estimate(problem, &survey, request);
+    if local && survey.effort.affords(work) && found.is_beaten_by(&least) {
+        found.take(Evaluator::Local, local::candidate(problem, &survey, request));
+        found.bound(&survey);
+        local = false;
+    }
     let wide = Wide::new(problem, &survey, request);
     // The cheapest of them, more often than not, first.
     let others = [Evaluator::Grid, Evaluator::Rows, Evaluator::Series].into_iter().filter(wanted);
@@ -135,6 +146,14 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
         found.take(evaluator, plan);
         found.bound(&survey);
     }
+    if local && (request.evaluator.is_some() || found.is_beaten_by(&least)) {
+        found.take(Evaluator::Local, local::candidate(problem, &survey, request));
+        local = false;
+    }
+    if local {
+        // That it cannot be cheaper is all there is to know.
+        found.others.push(least);
+    }
     if let Some(survey) = split::apart(problem, &survey, request) {
         found.bound(&survey);
         let wide = Wide::new(problem, &survey, request);
@@ -150,6 +169,8 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
 struct Found {
     plans: Vec<Plan>,
     refusals: Vec<(Evaluator, Error)>,
+    /// What was not planned, since it costs more.
+    others: Vec<Cost>,
 }
 
 impl Found {
@@ -165,10 +186,15 @@ impl Found {
         self.plans.iter().filter_map(Plan::cost).for_each(|milliseconds| survey.effort.beside(milliseconds));
     }
 
+    /// Whether something that costs at least so much may be the cheapest.
+    fn is_beaten_by(&self, least: &Cost) -> bool {
+        self.plans.iter().filter_map(Plan::cost).all(|milliseconds| least.milliseconds < milliseconds)
+    }
+
     fn cheapest(self) -> std::result::Result<Plan, Vec<Error>> {
-        let Self { plans, mut refusals } = self;
+        let Self { plans, mut refusals, others } = self;
         refusals.sort_by_key(|(evaluator, _)| Evaluator::ALL.iter().position(|other| other == evaluator));
-        let mut costs: Vec<Cost> = plans.iter().flat_map(|plan| plan.costs.clone()).collect();
+        let mut costs: Vec<Cost> = plans.iter().flat_map(|plan| plan.costs.clone()).chain(others).collect();
         costs.sort_by(|a, b| a.milliseconds.total_cmp(&b.milliseconds));
         let told = |(evaluator, error): &(Evaluator, Error)| Refusal { evaluator: *evaluator, reason: error.reason() };
         let refused = refusals.iter().map(told).collect();
