@@ -31,13 +31,13 @@ pub struct CostModel {
     pub moment: f64,
     /// One bell at one pixel that it reaches, by `local`. Calibrations from before there was `local` lack this, and the two
     /// that follow.
-    #[serde(default = "built_in_splat")]
+    #[serde(default = "lacking", skip_serializing_if = "is_lacking")]
     pub splat: f64,
     /// One ghost that is drawn where it reaches, by `local`.
-    #[serde(default = "built_in_quad")]
+    #[serde(default = "lacking", skip_serializing_if = "is_lacking")]
     pub quad: f64,
     /// One pixel of what they are drawn on, by `local`.
-    #[serde(default = "built_in_canvas")]
+    #[serde(default = "lacking", skip_serializing_if = "is_lacking")]
     pub canvas: f64,
     /// Starting a pass.
     pub pass: f64,
@@ -54,9 +54,9 @@ impl Default for CostModel {
             interpolation: 8.5,
             spectrum: 8.0,
             moment: built_in_moment(),
-            splat: built_in_splat(),
-            quad: built_in_quad(),
-            canvas: built_in_canvas(),
+            splat: 2.8,
+            quad: 650.0,
+            canvas: 5.0,
             pass: 130_000.0,
         }
     }
@@ -67,17 +67,13 @@ fn built_in_moment() -> f64 {
     0.8
 }
 
-/// Of these three: 250 to 2500 Gaussians of 2 and of 10 pixels.
-fn built_in_splat() -> f64 {
-    2.8
+/// A constant that an old calibration has not: no time.
+fn lacking() -> f64 {
+    f64::NAN
 }
 
-fn built_in_quad() -> f64 {
-    650.0
-}
-
-fn built_in_canvas() -> f64 {
-    5.0
+fn is_lacking(value: &f64) -> bool {
+    value.is_nan()
 }
 
 impl CostModel {
@@ -111,6 +107,20 @@ impl CostModel {
     pub fn from_values(values: [f64; Self::COUNT]) -> Self {
         let [bell, term, harmonic, profile, strip, interpolation, spectrum, moment, splat, quad, canvas, pass] = values;
         Self { bell, term, harmonic, profile, strip, interpolation, spectrum, moment, splat, quad, canvas, pass }
+    }
+
+    /// With all constants, where some are lacking: then these are to the others as they are in the built-in model.
+    pub fn completed(&self) -> Option<Self> {
+        let (values, built_in) = (self.values(), Self::default().values());
+        let mut ratios: Vec<f64> = values.iter().zip(built_in).map(|(value, built_in)| value / built_in).collect();
+        ratios.retain(|ratio| !ratio.is_nan());
+        if ratios.len() == values.len() || ratios.is_empty() {
+            return None;
+        }
+        ratios.sort_by(f64::total_cmp);
+        let ratio = ratios[ratios.len() / 2];
+        let complete = |k: usize| if values[k].is_nan() { ratio * built_in[k] } else { values[k] };
+        Some(Self::from_values(std::array::from_fn(complete)))
     }
 
     /// Whether every constant is what a time can be: finite and above 0.

@@ -57,7 +57,7 @@ pub(super) const HALF_A_UNIT: f64 = 0.5 * f32::EPSILON as f64;
 pub(super) const PER_WEIGHT: f64 = 4.5e-7;
 
 /// What is left where all is f64: the field is stored in f32, and glare is its product with a scale that is rounded too.
-const STORED: f64 = 3.0 * HALF_A_UNIT;
+pub(super) const STORED: f64 = 3.0 * HALF_A_UNIT;
 
 /// And in f64, where functions are off by some units of 2⁻⁵³, and for each addition.
 const PER_WEIGHT_DOUBLE: f64 = 2e-15;

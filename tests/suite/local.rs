@@ -6,10 +6,12 @@ use glam::DVec2;
 use vglare::certificate::Certificate;
 use vglare::frame::{Frame, Window};
 use vglare::plan::{Evaluator, Layer, Plan, Precision, Request};
+use vglare::problem::Problem;
 use vglare::renderer::Settings;
 use vglare::scene::Ghost;
 use vglare::series::{Bell, Profile};
 
+use crate::support::check::within;
 use crate::support::scenes::Chance;
 use crate::support::{bits, on_each_backend, on_one_backend, plan, plan_with, scenes};
 
@@ -204,6 +206,30 @@ fn a_frame_that_is_held_and_another_window_are_the_same() {
             for (whole, within) in whole.iter().flatten().zip(within.iter().flatten()) {
                 assert!((whole - within).abs() <= 2.0 * tolerance, "{whole} {within}");
             }
+        }
+    });
+}
+
+#[test]
+fn a_local_layer_stands_beside_a_series_and_a_sum() {
+    let ghosts = scenes::sized(11, 40, FRAME, 0.1, 0.5);
+    let problem = Problem::new(ghosts.as_slice(), FRAME);
+    let layers = |evaluators: &[Evaluator]| -> Vec<Layer> {
+        // Levels and modes are in units of a scale, which a plan by hand does not have.
+        let plan = |&evaluator: &Evaluator| plan_with(&ghosts, FRAME, 1e-5, evaluator).without_modes();
+        evaluators.iter().flat_map(|evaluator| plan(evaluator).layers().to_vec()).collect()
+    };
+    use Evaluator::{Direct, Grid, Local, Rows, Series};
+    let pixels = scenes::every_pixel(FRAME);
+    let once = vglare::reference::direct_at(&ghosts, &scenes::positions(FRAME, &pixels));
+    on_one_backend(|_, renderer| {
+        for evaluators in [&[Local][..], &[Direct, Local], &[Grid, Local], &[Rows, Direct, Local], &[Series, Local]] {
+            let plan = Plan::by_hand(problem.clone(), layers(evaluators));
+            renderer.field.set_scene(&plan).unwrap();
+            let times = evaluators.len() as f64;
+            let expected: Vec<[f64; 3]> = once.iter().map(|value| value.map(|value| times * value)).collect();
+            let found = renderer.field.probe(FRAME, &pixels).unwrap();
+            within(1e-4, &format!("{evaluators:?}"), &pixels, &expected, &found);
         }
     });
 }

@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use crate::frame::{Frame, Window};
 use crate::scene::Ghost;
+use crate::series::Shape;
 
 /// The most pixels along a side of an [`Area`] that may be drawn as a point.
 pub(crate) const LARGEST_POINT: f64 = 64.0;
@@ -27,10 +28,18 @@ pub(crate) struct Area {
 impl Area {
     const NONE: Self = Self { first: [0; 2], last: [0; 2], point: false };
 
+    /// How far a bell is computed, in sizes, where it is left out below a share of its peak: where it ends not much farther, all
+    /// of it, so that nothing is left out at all.
+    pub fn reach(shape: &dyn Shape, share: f64) -> f64 {
+        const NEARLY: f64 = 0.9;
+        let (reach, ends) = (shape.reach(share), shape.ends());
+        if share < 1.0 && reach >= NEARLY * ends { ends } else { reach }
+    }
+
     /// Where a ghost may be above a share of its peak; nowhere, where none of that is in the window.
     pub fn new(ghost: &Ghost, share: f64, frame: Frame) -> Self {
         let center = frame.pixel(ghost.center);
-        let half = ghost.bell.shape().reach(share) * ghost.size / frame.pixel_sides() + SLACK;
+        let half = Self::reach(ghost.bell.shape(), share) * ghost.size / frame.pixel_sides() + SLACK;
         let (first, last) = ((center - half).ceil(), (center + half).floor() + 1.0);
         let [low, high] = ends(frame.window);
         let (inside, until) = (first.clamp(low, high), last.clamp(low, high));

@@ -12,15 +12,16 @@ use rayon::prelude::*;
 use super::area::Area;
 use super::slopes::{Kind, Slopes};
 use crate::frame::Frame;
-use crate::plan::Group;
-use crate::plan::direct::{HALF_A_UNIT, PER_OFFSET, PER_WEIGHT, SINE};
+use crate::plan::direct::{HALF_A_UNIT, PER_OFFSET, PER_WEIGHT, SINE, STORED};
 use crate::plan::weigh::Weighed;
+use crate::plan::{Group, Precision};
 use crate::problem::Problem;
 use crate::scene::Ghost;
 use crate::series::Bell;
 
-/// The sides of a ghost's cells are at most so many of its sizes, and of where it ends.
-const OF_SIZE: f64 = 3.0;
+/// The sides of a ghost's cells are at most so many of its sizes, of few ghosts and of many, and of where it ends.
+const OF_SIZE: [f64; 2] = [1.5, 3.0];
+const FEW: usize = 1000;
 const OF_END: f64 = 0.5;
 
 /// A ghost has at most so many cells, and so has the window.
@@ -29,6 +30,9 @@ const MOST: usize = 1 << 18;
 
 /// Far from a ghost all that is left of it, and of all others, together counts for this part of the level.
 const FAR: f64 = 0.01;
+
+/// What f64 costs of what f32 does: its functions are off by a little more of its unit.
+const DOUBLE: f64 = 5e-9;
 
 /// Ghosts from which on the work is shared, and by how many: so many for any number of cores.
 const MANY: usize = 4096;
@@ -43,6 +47,17 @@ pub(super) struct Worst {
     pub single: f64,
     /// Pixels that the ghosts are computed at, all added up.
     pub reached: f64,
+}
+
+impl Worst {
+    /// What floats cost, at most.
+    pub fn rounding(&self, precision: Precision) -> f64 {
+        match precision {
+            Precision::Single => self.single,
+            // The same roundings, of so much smaller units; and then the canvas.
+            Precision::Double => STORED + HALF_A_UNIT + DOUBLE * self.single,
+        }
+    }
 }
 
 pub(super) struct Map<'a> {
@@ -108,7 +123,7 @@ impl<'a> Map<'a> {
 
     /// Some of the ghosts, counted group by group.
     fn part(&self, range: Range<usize>, level: f64) -> Part {
-        let mut part = Part::new(self.problem.frame(), level, FAR * level / self.kept as f64);
+        let mut part = Part::new(self.problem.frame(), level, self.kept);
         let mut first = 0;
         for (group, &bell) in self.groups.iter().zip(&self.of_group) {
             let count = group.members.len();
@@ -161,6 +176,8 @@ struct Part {
     level: f64,
     /// What a ghost may be where it does not count.
     far: f64,
+    /// The sides of a ghost's cells, in sizes.
+    of_size: f64,
     least: u32,
     levels: Vec<Level>,
     reached: f64,
@@ -184,14 +201,15 @@ struct Along {
 }
 
 impl Part {
-    fn new(frame: Frame, level: f64, far: f64) -> Self {
+    fn new(frame: Frame, level: f64, kept: usize) -> Self {
+        let (far, of_size) = (FAR * level / kept as f64, OF_SIZE[usize::from(kept > FEW)]);
         let cells = |shift: u32| {
             let along = |side: u32| (u64::from(side) >> shift) + 1;
             along(frame.window.width) * along(frame.window.height)
         };
         let least = (0..32).find(|&shift| cells(shift) <= MOST as u64).unwrap_or(31);
         let (levels, columns, rows) = (Vec::new(), Vec::new(), Vec::new());
-        Self { frame, level, far, least, levels, reached: 0.0, columns, rows }
+        Self { frame, level, far, of_size, least, levels, reached: 0.0, columns, rows }
     }
 
     fn add(&mut self, ghost: &Ghost, weight: f64, slopes: &Slopes<'_>) {
@@ -205,6 +223,7 @@ impl Part {
             beside: beside(ghost),
         };
         let area = Area::new(ghost, self.level / weight, frame);
+        let whole = Area::reach(slopes.shape, self.level / weight) >= slopes.ends;
         self.reached += area.pixels(frame);
         let farthest = slopes.shape.reach(self.far / weight);
         let spans = [0, 1].map(|axis| {
@@ -225,13 +244,13 @@ impl Part {
         let shift = self.shift(&bell, &x, &y);
         bell.along(0, &x, shift, &mut self.columns);
         bell.along(1, &y, shift, &mut self.rows);
-        self.deposit(shift, weight, &bell);
+        self.deposit(shift, weight, &bell, whole);
     }
 
     /// The cells of a bell that has to do with these columns and rows.
     fn shift(&self, bell: &Seen<'_>, x: &Span, y: &Span) -> u32 {
         let ends = bell.slopes.ends;
-        let part = if ends.is_finite() { OF_END * ends } else { OF_SIZE };
+        let part = if ends.is_finite() { OF_END * ends } else { self.of_size };
         let finest = part * bell.size[0].min(bell.size[1]);
         let mut shift = self.least.max((finest.max(1.0).log2() as u32).min(31));
         let count = |span: &Span, shift: u32| (span.high >> shift) as usize - (span.low >> shift) as usize + 1;
@@ -241,7 +260,8 @@ impl Part {
         shift
     }
 
-    fn deposit(&mut self, shift: u32, weight: f64, bell: &Seen<'_>) {
+    /// Adds a bell to the cells of its columns and rows, which is cut off nowhere where it is `whole`.
+    fn deposit(&mut self, shift: u32, weight: f64, bell: &Seen<'_>, whole: bool) {
         let sides = [self.frame.window.width, self.frame.window.height];
         let index = self.levels.iter().position(|level| level.shift == shift).unwrap_or_else(|| {
             let [columns, rows] = sides.map(|side| ((side - 1) >> shift) as usize + 1);
@@ -260,7 +280,7 @@ impl Part {
                     continue;
                 }
                 let cell = &mut cells[x.cell];
-                if !(x.all && y.all) {
+                if !(whole || x.all && y.all) {
                     cell.cut += self.level.min(weight * value);
                 }
                 if x.some && y.some {

@@ -10,7 +10,8 @@ mod slopes;
 use std::sync::Arc;
 
 use super::candidate::Survey;
-use super::{Cost, Evaluator, Group, Layer, Plan, Precision, Prediction, Request, Transform, cost, direct, share};
+use super::weigh::Weighed;
+use super::{Cost, Evaluator, Group, Layer, Plan, Precision, Prediction, Request, Transform, cost, share};
 use crate::frame::Frame;
 use crate::problem::Problem;
 use crate::scene::Ghost;
@@ -39,12 +40,13 @@ const NEEDED: f64 = 0.1;
 /// floats cost some times as much.
 const SINGLE: f64 = 0.8;
 
-/// What 64-bit floats leave beside the rest: a canvas of f32, from which the glare is made.
+/// Half a unit of the canvas, which is one of f32 whatever the floats are.
 const CANVAS: f64 = 0.5 * f32::EPSILON as f64;
 
 /// How near to its budget what is left out should come, and how often that is tried.
 const CLOSE: f64 = 0.4;
 const TRIES: usize = 6;
+const MOST_TRIES: usize = 40;
 
 /// Ghosts that are looked at for an estimate.
 const SAMPLE: usize = 512;
@@ -59,61 +61,80 @@ impl Local {
     }
 }
 
+/// A local layer, and what it is off by at most.
+pub(super) struct Bounded {
+    pub local: Local,
+    /// What is left out.
+    pub cut: f64,
+    /// What its floats cost.
+    pub rounding: f64,
+}
+
+/// A local layer of groups, which stays within a part of the tolerance.
+///
+/// # Errors
+/// [`Error::ToleranceBelowFloor`] where floats cannot be as exact.
+pub(super) fn layer(problem: &Problem, weighed: &Weighed, groups: &[Group], part: f64) -> Result<Bounded> {
+    let map = Map::new(problem, weighed, groups);
+    let mut level = 0.7 * part / crowding(problem, weighed, part);
+    let mut worst = map.worst(level);
+    let single = worst.rounding(Precision::Single) <= SINGLE * part;
+    let mut precision = if single { Precision::Single } else { Precision::Double };
+    // The highest level found that stays within the budget.
+    let mut found: Option<(f64, Worst)> = None;
+    for attempt in 0..MOST_TRIES {
+        // What floats cost grows a little with the reach.
+        if precision == Precision::Single && worst.single > (1.0 - NEEDED) * part {
+            (precision, found) = (Precision::Double, None);
+        }
+        let rounding = worst.rounding(precision);
+        if rounding > (1.0 - NEEDED) * part {
+            return Err(Error::ToleranceBelowFloor { asked: part, floor: rounding / (1.0 - NEEDED) });
+        }
+        let budget = 0.98 * (part - rounding);
+        if worst.cut <= budget {
+            found = found.filter(|(highest, _)| *highest > level).or(Some((level, worst)));
+        }
+        let close = worst.cut <= budget && (worst.cut >= CLOSE * budget || worst.cut == 0.0 || level >= budget);
+        if close || found.is_some() && (attempt >= TRIES || worst.cut > budget) {
+            break;
+        }
+        // However many meet at a place, each leaves out no more than the level.
+        let factor = if attempt < TRIES { 0.75 * budget / worst.cut } else { 0.1 };
+        level = (level * factor).min(budget);
+        worst = map.worst(level);
+    }
+    let Some((level, worst)) = found else {
+        return Err(Error::Plan("local would leave out too much at any reach".into()));
+    };
+    let rounding = worst.rounding(precision);
+    let groups = groups.iter().map(|group| Group { transform: Transform::Direct, ..group.clone() }).collect();
+    let local = Local { groups, level, precision, reached: worst.reached };
+    Ok(Bounded { local, cut: worst.cut, rounding })
+}
+
 /// The plan by `local`.
 ///
 /// # Errors
 /// [`Error::ToleranceBelowFloor`] where floats cannot be as exact.
 pub(super) fn candidate(problem: &Arc<Problem>, survey: &Survey, request: &Request) -> Result<Plan> {
     let weighed = &survey.weighed;
-    let map = Map::new(problem, weighed, &survey.groups);
     let left = request.tolerance - weighed.dropped_error;
-    let budget = |rounding: f64| 0.98 * (left - rounding);
-    let mut level = 0.7 * left / crowding(problem, survey, request);
-    let mut worst = map.worst(level);
-    let mut precision = Precision::Single;
-    let mut rounding = worst.single;
-    if rounding > SINGLE * request.tolerance {
-        precision = Precision::Double;
-        rounding = direct::bounds(problem, weighed).double + CANVAS;
-        if left - rounding < NEEDED * request.tolerance {
-            return Err(Error::ToleranceBelowFloor {
-                asked: request.tolerance,
-                floor: rounding / (1.0 - NEEDED - share::DROPPED),
-            });
-        }
-    }
-    // What floats cost grows a little with the reach.
-    for _ in 0..TRIES {
-        let budget = budget(rounding);
-        if worst.cut <= budget && (worst.cut >= CLOSE * budget || worst.cut == 0.0) {
-            break;
-        }
-        level = (level * 0.75 * budget / worst.cut).min(budget);
-        worst = map.worst(level);
-        rounding = if precision == Precision::Single { worst.single } else { rounding };
-    }
-    finish(problem, survey, request, level, &worst, (precision, rounding))
-}
-
-fn finish(
-    problem: &Arc<Problem>,
-    survey: &Survey,
-    request: &Request,
-    level: f64,
-    worst: &Worst,
-    (precision, rounding): (Precision, f64),
-) -> Result<Plan> {
-    let weighed = &survey.weighed;
+    let Bounded { local, cut, rounding } =
+        layer(problem, weighed, &survey.groups, left).map_err(|error| match error {
+            Error::ToleranceBelowFloor { floor, .. } => {
+                Error::ToleranceBelowFloor { asked: request.tolerance, floor: floor / (1.0 - share::DROPPED) }
+            }
+            error => error,
+        })?;
     let storage = CANVAS.min(rounding);
-    let predicted = Prediction {
-        dropped: weighed.dropped_error,
-        cut: worst.cut,
-        rounding: rounding - storage,
-        storage,
-        ..Prediction::default()
-    };
-    let groups = survey.groups.iter().map(|group| Group { transform: Transform::Direct, ..group.clone() }).collect();
-    let local = Local { groups, level, precision, reached: worst.reached };
+    let dropped = weighed.dropped_error;
+    let predicted = Prediction { dropped, cut, rounding: rounding - storage, storage, ..Prediction::default() };
+    let precision = local.precision;
+    // The lists of 64-bit ghosts, eight of them a round.
+    if precision == Precision::Double && (problem.ghosts().len() - weighed.dropped) / 8 > request.loop_rounds {
+        return Err(Error::Plan("local would need more rounds of a loop than this renderer runs".into()));
+    }
     let layers = vec![Layer::Local(local)];
     Ok(Plan {
         tolerance: request.tolerance,
@@ -128,28 +149,29 @@ fn finish(
 }
 
 /// About how many times the level is left out at the worst place, for a start.
-fn crowding(problem: &Problem, survey: &Survey, request: &Request) -> f64 {
-    3.0 + 1.5 * reached(problem, survey, request) / problem.frame().window.pixels() as f64
+fn crowding(problem: &Problem, weighed: &Weighed, level: f64) -> f64 {
+    3.0 + 1.5 * reached(problem, weighed, level) / problem.frame().window.pixels() as f64
 }
 
 /// What `local` costs at least, by a few of the ghosts, and what it costs to plan it, in nanoseconds.
 pub(super) fn estimate(problem: &Problem, survey: &Survey, request: &Request) -> (Cost, f64) {
     let (kept, frame) = (problem.ghosts().len() - survey.weighed.dropped, problem.frame());
-    let reached = reached(problem, survey, request);
+    let reached = reached(problem, &survey.weighed, request.tolerance);
     let nanoseconds = cost::local(kept, reached, Precision::Single, frame, &request.cost_model);
     let cost = Cost { evaluator: Evaluator::Local, summed: 0, milliseconds: 1e-6 * nanoseconds };
     (cost, PLANNING * kept as f64)
 }
 
-/// Pixels that the ghosts reach at least, by a few of them.
-fn reached(problem: &Problem, survey: &Survey, request: &Request) -> f64 {
-    let (weights, frame) = (&survey.weighed.weights, problem.frame());
-    let kept = weights.len() - survey.weighed.dropped;
+/// Pixels that the ghosts reach where they are left out below a level, by a few of them.
+fn reached(problem: &Problem, weighed: &Weighed, level: f64) -> f64 {
+    let (weights, frame) = (&weighed.weights, problem.frame());
     let step = weights.len().div_ceil(SAMPLE).max(1);
     let (mut reached, mut seen) = (0.0, 0.0);
-    for (ghost, &weight) in problem.ghosts().iter().zip(weights).step_by(step).filter(|(_, weight)| **weight > 0.0) {
-        reached += Area::new(ghost, request.tolerance / weight, frame).pixels(frame);
+    for (ghost, &weight) in problem.ghosts().iter().zip(weights).step_by(step) {
+        if weight > 0.0 {
+            reached += Area::new(ghost, level / weight, frame).pixels(frame);
+        }
         seen += 1.0;
     }
-    reached / f64::max(seen, 1.0) * kept as f64
+    reached / f64::max(seen, 1.0) * weights.len() as f64
 }
