@@ -22,7 +22,7 @@ pub struct Known {
     pub model: CostModel,
     /// The file that it is from; none for the built-in one.
     pub file: Option<PathBuf>,
-    /// Why a file that is there was not used.
+    /// Why a file that is there was not used, or only in part.
     pub warning: Option<String>,
 }
 
@@ -35,10 +35,15 @@ impl Known {
             Ok(kept) => {
                 let key = Key::of(device);
                 let entry = kept.calibrations.into_iter().find(|entry| entry.key == key);
-                entry.map_or_else(Self::default, |entry| Self {
-                    model: entry.nanoseconds,
-                    file: Some(path),
-                    warning: None,
+                entry.map_or_else(Self::default, |entry| {
+                    let completed = entry.nanoseconds.completed();
+                    let warning = completed.map(|_| {
+                        format!(
+                            "{} is from before there was `local`; `vglare calibrate` measures that too",
+                            path.display()
+                        )
+                    });
+                    Self { model: completed.unwrap_or(entry.nanoseconds), file: Some(path), warning }
                 })
             }
             Err(reason) => {
@@ -114,7 +119,8 @@ fn read(path: &Path) -> std::result::Result<Kept, String> {
         Err(error) => return Err(error.to_string()),
     };
     let kept: Kept = serde_json::from_str(&text).map_err(|error| format!("it is no calibration ({error})"))?;
-    match kept.calibrations.iter().find(|entry| !entry.nanoseconds.is_sound()) {
+    let sound = |model: &CostModel| model.completed().unwrap_or(*model).is_sound();
+    match kept.calibrations.iter().find(|entry| !sound(&entry.nanoseconds)) {
         Some(entry) => Err(format!("what it has for {} cannot be times", entry.key.renderer)),
         None => Ok(kept),
     }

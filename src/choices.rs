@@ -15,11 +15,21 @@ pub enum Evaluator {
     Rows,
     /// Evaluate the series on the coarse lattice that its band limit allows, then interpolate.
     Grid,
+    /// Sum each bell at the pixels that it reaches, and nowhere else.
+    Local,
 }
 
 impl Evaluator {
     /// Every evaluator.
-    pub const ALL: [Self; 4] = [Self::Direct, Self::Series, Self::Rows, Self::Grid];
+    pub const ALL: [Self; 5] = [Self::Direct, Self::Series, Self::Rows, Self::Grid, Self::Local];
+
+    /// Those that evaluate a Fourier series.
+    pub const SERIES: [Self; 3] = [Self::Series, Self::Rows, Self::Grid];
+
+    /// Whether it evaluates a Fourier series, with a period and a degree.
+    pub fn is_series(self) -> bool {
+        Self::SERIES.contains(&self)
+    }
 }
 
 impl std::fmt::Display for Evaluator {
@@ -29,6 +39,7 @@ impl std::fmt::Display for Evaluator {
             Self::Series => "series",
             Self::Rows => "rows",
             Self::Grid => "grid",
+            Self::Local => "local",
         })
     }
 }

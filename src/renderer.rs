@@ -21,6 +21,7 @@ mod exchange;
 mod field;
 mod graf;
 mod live;
+mod local;
 mod mask;
 mod picture;
 mod settings;

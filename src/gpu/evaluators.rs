@@ -15,7 +15,7 @@ use crate::frame::Frame;
 use crate::{Error, Result};
 
 /// Where there are many ghosts, `direct` sums this many of them in a round of its loop.
-pub(super) const STEP: usize = 8;
+pub(crate) const STEP: usize = 8;
 /// And this many before what is lost of their sum is made up for.
 pub(super) const BATCH: usize = 64;
 /// Kinds of bells, and one more for the end of the last, in whole `uvec4`.
@@ -24,7 +24,7 @@ pub(super) const RUNS: usize = 16;
 pub(super) const FEW_BYTES: u32 = 64 << 10;
 
 /// What ghosts and parameters of bells are made of, in whichever floats.
-type Words = [u32; 4];
+pub(super) type Words = [u32; 4];
 
 /// A lattice over one tile, and where the tile's pixels lie on it.
 pub(crate) struct LatticeTile<'a> {
@@ -201,7 +201,7 @@ impl Evaluators {
 }
 
 /// Refuses a loop that the software renderer would end too early: a wrong picture without any error.
-fn within_rounds(runner: &Runner, rounds: usize, evaluator: &str, count: usize, what: &str) -> Result<()> {
+pub(super) fn within_rounds(runner: &Runner, rounds: usize, evaluator: &str, count: usize, what: &str) -> Result<()> {
     if runner.device().info().loop_rounds().is_some_and(|most| rounds > most) {
         return Err(Error::Gl(format!(
             "the software renderer cannot go through {count} {what} for each pixel, as `{evaluator}` would; \

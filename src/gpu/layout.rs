@@ -55,8 +55,20 @@ pub(crate) const FOLDED: Binding = ("UNIT_FOLDED", 13);
 /// The photo with its glare, where it is looked at.
 pub(crate) const PICTURE: Binding = ("UNIT_PICTURE", 14);
 
+/// What `local` draws on.
+pub(crate) const CANVAS: Binding = ("UNIT_CANVAS", 15);
+
+/// The last of the units.
+pub(crate) const LAST_UNIT: u32 = CANVAS.1;
+
+/// Pixels along a side of the largest square that is drawn as a point.
+pub(crate) const LARGEST_POINT: i32 = 64;
+
+/// Pixels along a side of the blocks that have lists of ghosts.
+pub(crate) const LOCAL_BLOCK: u32 = 16;
+
 /// Every binding, for the head of every shader.
-pub(crate) const BINDINGS: [Binding; 29] = [
+pub(crate) const BINDINGS: [Binding; 30] = [
     PASS,
     EVALUATOR,
     SAMPLES,
@@ -86,15 +98,17 @@ pub(crate) const BINDINGS: [Binding; 29] = [
     RADIAL,
     FOLDED,
     PICTURE,
+    CANVAS,
 ];
 
 /// Numbers that passes and their shaders have to agree on, for the head of every shader: work groups, and what is done in
 /// one round of a loop.
-pub(crate) const NUMBERS: [Binding; 11] = [
+pub(crate) const NUMBERS: [Binding; 12] = [
     ("DIRECT_STEP", super::evaluators::STEP as u32),
     ("DIRECT_BATCH", super::evaluators::BATCH as u32),
     ("DIRECT_FEW_BYTES", super::evaluators::FEW_BYTES),
     ("DIRECT_RUNS", super::evaluators::RUNS as u32),
+    ("LOCAL_BLOCK", LOCAL_BLOCK),
     ("SPECTRUM_TILE", super::spectrum::TILE),
     ("SPECTRUM_MINE", super::spectrum::MINE),
     ("SPECTRUM_ROWS", super::spectrum::TILE / super::spectrum::MINE),
@@ -148,7 +162,31 @@ pub(crate) struct DoubleGhost {
 }
 const _: () = assert!(size_of::<DoubleGhost>() == 64);
 
-/// A ghost of either.
+/// One ghost as `local` draws it, a vertex or an instance.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct LocalGhost {
+    /// First column and row that it covers, and those after the last, in pixels of the picture.
+    pub area: [i32; 4],
+    /// The pixel that is nearest to its centre.
+    pub anchor: [i32; 2],
+    /// From its centre to there, in sizes.
+    pub offset: [f32; 2],
+    /// From there to the next column and row.
+    pub step: [f32; 2],
+    /// Radiance, per colour in units of the field's scale.
+    pub weight: [f32; 3],
+    /// As that of a [`DirectGhost`].
+    pub bell: u32,
+}
+const _: () = assert!(size_of::<LocalGhost>() == 56);
+
+impl DoubleGhost {
+    /// None at all; of size 0 it would be 0 / 0 at its centre.
+    pub const NONE: Self = Self { center: [0.0; 2], size: [1.0; 2], weight: [0.0; 3], bell: 0, pad: 0 };
+}
+
+/// A ghost of either that is summed at every pixel.
 pub(crate) trait SummedGhost: Pod {
     /// The same, so that it adds nothing.
     fn without_weight(&self) -> Self;

@@ -58,7 +58,7 @@ impl LinesPass {
         let [red, green, blue] = colour;
         self.uniforms.store(&[Uniforms { window: self.window, colour: [red, green, blue, 1.0] }])?;
         self.uniforms.bind_uniform(PASS);
-        let program = runner.drawn_by("lines.vert", "lines.frag")?;
+        let program = runner.drawn_by("lines.vert", "lines.frag", &[])?;
         runner.run("lines", || {
             self.target.target(0);
             program.bind();

@@ -10,6 +10,7 @@
 //! | `spectrum` | ghosts → A, B, C, D |
 //! | `harmonics`, `evaluators` | spectrum → the function `glare(pixel)` of each evaluator |
 //! | `field`, `range`, `composite` | that function → the field, its range, the picture |
+//! | `local` | ghosts drawn where they reach → the canvas that `local`'s function reads |
 //! | `graf` | bells on a disc → their Bessel spectrum → the function `glare(pixel)` of Graf's theorem |
 //! | `coefficients` | samples of any function → its coefficients |
 //! | `lines` | curves as line strips |
@@ -31,6 +32,7 @@ pub(crate) mod graf;
 mod harmonics;
 pub(crate) mod layout;
 pub(crate) mod lines;
+pub(crate) mod local;
 pub(crate) mod mask;
 #[cfg(feature = "window")]
 pub(crate) mod paint;

@@ -100,6 +100,25 @@ impl<T: Pod> Buffer<T> {
         }
     }
 
+    /// Makes its elements the attributes of the current vertex array, one after `divisor` instances or, with 0, one a vertex.
+    pub(super) fn bind_attributes(&self, attributes: &[Attribute], divisor: u32) {
+        let (gl, stride) = (self.device.gl(), size_of::<T>() as i32);
+        // SAFETY: the device keeps its context current on this thread, and the offsets are into the buffer that is bound.
+        unsafe {
+            gl.bind_buffer(glow::ARRAY_BUFFER, Some(self.raw));
+            for &Attribute { location, kind, count, first } in attributes {
+                let offset = first * size_of::<f32>() as i32;
+                gl.enable_vertex_attrib_array(location);
+                if kind == glow::FLOAT {
+                    gl.vertex_attrib_pointer_f32(location, count, kind, false, stride, offset);
+                } else {
+                    gl.vertex_attrib_pointer_i32(location, count, kind, stride, offset);
+                }
+                gl.vertex_attrib_divisor(location, divisor);
+            }
+        }
+    }
+
     /// Binds the whole buffer as a uniform block.
     pub fn bind_uniform(&self, (_, index): Binding) {
         // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
@@ -114,6 +133,17 @@ impl<T> Drop for Buffer<T> {
             unsafe { gl.delete_buffer(self.raw) }
         }
     }
+}
+
+/// Some words of a buffer's element, as a vertex shader has them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Attribute {
+    pub location: u32,
+    /// `GL_FLOAT`, `GL_INT` or `GL_UNSIGNED_INT`.
+    pub kind: u32,
+    /// How many words, and which is the first.
+    pub count: i32,
+    pub first: i32,
 }
 
 /// What a texture's texels are.

@@ -124,8 +124,8 @@ impl Runner {
     }
 
     /// The program of a vertex and a fragment shader of `shaders/`.
-    pub(super) fn drawn_by(&self, vertex: &str, fragment: &str) -> Result<Rc<Program>> {
-        self.program(fragment, &[], |device, fragment, _| Program::drawing(device, vertex, fragment))
+    pub(super) fn drawn_by(&self, vertex: &str, fragment: &str, defines: &[Define<'_>]) -> Result<Rc<Program>> {
+        self.program(fragment, defines, |device, fragment, defines| Program::drawing(device, vertex, fragment, defines))
     }
 
     /// Runs `work` as a part of the frame with a name and, while timing is on, a time.

@@ -43,6 +43,9 @@ const SOURCES: &[(&str, &str)] = &sources![
     "evaluators/graf.glsl",
     "evaluators/grid.glsl",
     "evaluators/held.glsl",
+    "evaluators/layers.glsl",
+    "evaluators/local.glsl",
+    "evaluators/none.glsl",
     "evaluators/rows.glsl",
     "evaluators/series.glsl",
     "evaluators/split.glsl",
@@ -55,6 +58,9 @@ const SOURCES: &[(&str, &str)] = &sources![
     "lattice.frag",
     "lines.frag",
     "lines.vert",
+    "local.frag",
+    "local.vert",
+    "local_lists.frag",
     "mask.frag",
     "precision.comp",
     "probe.frag",
@@ -95,8 +101,8 @@ impl Program {
     }
 
     /// A program that runs `fragment` for what `vertex` makes of its vertices.
-    pub fn drawing(device: &Rc<Device>, vertex: &str, fragment: &str) -> Result<Self> {
-        Self::link(device, &[(glow::VERTEX_SHADER, vertex), (glow::FRAGMENT_SHADER, fragment)], &[])
+    pub fn drawing(device: &Rc<Device>, vertex: &str, fragment: &str, defines: &[Define<'_>]) -> Result<Self> {
+        Self::link(device, &[(glow::VERTEX_SHADER, vertex), (glow::FRAGMENT_SHADER, fragment)], defines)
     }
 
     /// A program of one compute shader.

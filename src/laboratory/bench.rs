@@ -5,6 +5,7 @@ mod choices;
 mod exchange;
 mod first;
 mod gaussians;
+mod local;
 mod many;
 mod random;
 mod report;
@@ -66,8 +67,12 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000), conflicts_with = "gaussians")]
     scenes: Option<u32>,
 
+    /// Measure nothing but small bells, each where it reaches, against a copy
+    #[arg(long, conflicts_with_all = ["gaussians", "scenes"])]
+    local: bool,
+
     /// Measure nothing but frames of the window, without a window: a slider and a light that are dragged
-    #[arg(long, conflicts_with_all = ["gaussians", "scenes", "rounds", "quick"])]
+    #[arg(long, conflicts_with_all = ["gaussians", "scenes", "local", "rounds", "quick"])]
     viewer: bool,
 
     /// Write the rows of all tables to this file too
@@ -169,12 +174,17 @@ fn measure(args: &Args, window: Window) -> Result<Report> {
         choices::of_random_scenes(&stage, &mut report, count, args.size)?;
         return Ok(report);
     }
+    if args.local {
+        local::against_a_copy(&stage, &mut report)?;
+        return Ok(report);
+    }
     if args.viewer {
         window(stage.shared_device(), size, &mut report)?;
         return Ok(report);
     }
     first::frame(&stage, opened, &mut report)?;
     cases::default_path(&stage, &mut report)?;
+    local::against_a_copy(&stage, &mut report)?;
     many::ghosts(&stage, &mut report, args.quick)?;
     if !args.quick {
         cases::rows_and_series(&stage, &mut report)?;

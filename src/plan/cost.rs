@@ -30,6 +30,16 @@ pub struct CostModel {
     /// One moment of one ghost, where a group's spectrum is gathered. Calibrations from before there were moments lack it.
     #[serde(default = "built_in_moment")]
     pub moment: f64,
+    /// One bell at one pixel that it reaches, by `local`. Calibrations from before there was `local` lack this, and the two
+    /// that follow.
+    #[serde(default = "lacking", skip_serializing_if = "is_lacking")]
+    pub splat: f64,
+    /// One ghost that is drawn where it reaches, by `local`.
+    #[serde(default = "lacking", skip_serializing_if = "is_lacking")]
+    pub quad: f64,
+    /// One pixel of what they are drawn on, by `local`.
+    #[serde(default = "lacking", skip_serializing_if = "is_lacking")]
+    pub canvas: f64,
     /// Starting a pass.
     pub pass: f64,
 }
@@ -45,6 +55,9 @@ impl Default for CostModel {
             interpolation: 8.5,
             spectrum: 8.0,
             moment: built_in_moment(),
+            splat: 2.8,
+            quad: 650.0,
+            canvas: 5.0,
             pass: 130_000.0,
         }
     }
@@ -55,24 +68,60 @@ fn built_in_moment() -> f64 {
     0.8
 }
 
+/// A constant that an old calibration has not: no time.
+fn lacking() -> f64 {
+    f64::NAN
+}
+
+fn is_lacking(value: &f64) -> bool {
+    value.is_nan()
+}
+
 impl CostModel {
     /// How many constants there are.
-    pub const COUNT: usize = 9;
+    pub const COUNT: usize = 12;
 
     /// The constants' names, in the order of [`CostModel::values`].
-    pub const NAMES: [&'static str; Self::COUNT] =
-        ["bell", "term", "harmonic", "profile", "strip", "interpolation", "spectrum", "moment", "pass"];
+    pub const NAMES: [&'static str; Self::COUNT] = [
+        "bell",
+        "term",
+        "harmonic",
+        "profile",
+        "strip",
+        "interpolation",
+        "spectrum",
+        "moment",
+        "splat",
+        "quad",
+        "canvas",
+        "pass",
+    ];
 
     /// The constants in nanoseconds, in the order of [`CostModel::NAMES`].
     pub fn values(&self) -> [f64; Self::COUNT] {
-        let &Self { bell, term, harmonic, profile, strip, interpolation, spectrum, moment, pass } = self;
-        [bell, term, harmonic, profile, strip, interpolation, spectrum, moment, pass]
+        let &Self { bell, term, harmonic, profile, strip, interpolation, spectrum, moment, splat, quad, canvas, pass } =
+            self;
+        [bell, term, harmonic, profile, strip, interpolation, spectrum, moment, splat, quad, canvas, pass]
     }
 
     /// The constants from nanoseconds, in the order of [`CostModel::NAMES`].
     pub fn from_values(values: [f64; Self::COUNT]) -> Self {
-        let [bell, term, harmonic, profile, strip, interpolation, spectrum, moment, pass] = values;
-        Self { bell, term, harmonic, profile, strip, interpolation, spectrum, moment, pass }
+        let [bell, term, harmonic, profile, strip, interpolation, spectrum, moment, splat, quad, canvas, pass] = values;
+        Self { bell, term, harmonic, profile, strip, interpolation, spectrum, moment, splat, quad, canvas, pass }
+    }
+
+    /// With all constants, where some are lacking: then these are to the others as they are in the built-in model.
+    pub fn completed(&self) -> Option<Self> {
+        let (values, built_in) = (self.values(), Self::default().values());
+        let mut ratios: Vec<f64> = values.iter().zip(built_in).map(|(value, built_in)| value / built_in).collect();
+        ratios.retain(|ratio| !ratio.is_nan());
+        if ratios.len() == values.len() || ratios.is_empty() {
+            return None;
+        }
+        ratios.sort_by(f64::total_cmp);
+        let ratio = ratios[ratios.len() / 2];
+        let complete = |k: usize| if values[k].is_nan() { ratio * built_in[k] } else { values[k] };
+        Some(Self::from_values(std::array::from_fn(complete)))
     }
 
     /// Whether every constant is what a time can be: finite and above 0.
@@ -96,12 +145,16 @@ pub struct Cost {
 pub(super) fn estimate(layers: &[Layer], precision: Precision, frame: Frame, model: &CostModel) -> Cost {
     let summed = |layer: &Layer| match layer {
         Layer::Direct(groups) => groups.iter().map(|group| group.ghosts).sum(),
-        Layer::Series(_) => 0,
+        Layer::Series(_) | Layer::Local(_) => 0,
     };
     let one = |layer: &Layer| match layer {
         Layer::Direct(groups) if layers.len() == 1 => direct(groups, precision, frame, model) + model.pass,
         // Beside a series it is no pass of its own.
         Layer::Direct(groups) => direct(groups, precision, frame, model),
+        Layer::Local(layer) => {
+            let ghosts = layer.groups.iter().map(|group| group.ghosts).sum();
+            local(ghosts, layer.reached, layer.precision, frame, model)
+        }
         Layer::Series(series) => {
             let spectrum: f64 = series.groups.iter().map(|group| gather::cost(group, &group.transform, model)).sum();
             spectrum + field(series.evaluator, &Size::of(series), frame, model)
@@ -138,7 +191,7 @@ pub(super) fn field(evaluator: Evaluator, size: &Size, frame: Frame, model: &Cos
         rows * size.terms * model.profile + rows * columns * f64::from(size.degree[0] + 1) * model.harmonic
     };
     match evaluator {
-        Evaluator::Direct => 0.0,
+        Evaluator::Direct | Evaluator::Local => 0.0,
         Evaluator::Series => pixels * size.terms * model.term + 4.0 * model.pass,
         Evaluator::Rows => rows(f64::from(window.height), f64::from(window.width)) + 5.0 * model.pass,
         Evaluator::Grid => {
@@ -183,6 +236,23 @@ fn in_gaussians(bell: &Bell, precision: Precision) -> f64 {
     };
     if precision == Precision::Single { single } else { double }
 }
+
+/// What drawing ghosts where they reach so many pixels in all costs, in nanoseconds.
+pub(super) fn local(ghosts: usize, reached: f64, precision: Precision, frame: Frame, model: &CostModel) -> f64 {
+    let canvas = frame.window.pixels() as f64 * model.canvas + 2.0 * model.pass;
+    match precision {
+        Precision::Single => ghosts as f64 * model.quad + reached * model.splat + canvas,
+        // Lists of the ghosts of each block of pixels, as `direct` sums many; blocks reach beyond the ghosts.
+        Precision::Double => {
+            let blocks = ghosts as f64 * model.quad
+                + LISTED * reached * model.bell * slower(usize::MAX) * in_gaussians(&Bell::Gaussian, precision);
+            blocks + canvas
+        }
+    }
+}
+
+/// Pixels of the blocks that a ghost is listed in, for each that it reaches.
+const LISTED: f64 = 2.5;
 
 /// What `direct` does at a pixel beside its bells, in bells: 2 to 3 on llvmpipe, for 1 to 6 ghosts.
 const AROUND_BELLS: f64 = 2.5;

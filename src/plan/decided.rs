@@ -6,7 +6,7 @@ use glam::DVec2;
 use serde::{Serialize, Serializer};
 
 use super::layer::Told;
-use super::{Cost, Evaluator, Group, Lattice, Layer, Modes, Precision, Prediction, Refusal, Series};
+use super::{Cost, Evaluator, Group, Lattice, Layer, Local, Modes, Precision, Prediction, Refusal, Series};
 use crate::problem::Problem;
 
 /// What was decided for a problem: the layers whose sum is the field, with the error and the cost that are expected.
@@ -90,9 +90,11 @@ impl Plan {
         self.layers.iter().find_map(|layer| if let Layer::Series(series) = layer { Some(series) } else { None })
     }
 
-    /// How the field is computed: by its series where it has one, whether ghosts are summed beside it or not.
+    /// How the field is computed: by its series where it has one, whether ghosts are summed beside it or not; else by its
+    /// first layer.
     pub fn evaluator(&self) -> Evaluator {
-        self.series().map_or(Evaluator::Direct, |series| series.evaluator)
+        let first = || self.layers.first().map_or(Evaluator::Direct, Layer::evaluator);
+        self.series().map_or_else(first, |series| series.evaluator)
     }
 
     /// The series' period in x and y; 1 where there is no series.
@@ -139,6 +141,11 @@ impl Plan {
     /// How many of them are summed directly at every pixel: all by `direct`, a few or none beside a series.
     pub fn summed(&self) -> usize {
         self.summed_groups().map(|group| group.members.len()).sum()
+    }
+
+    /// Its ghosts that are summed where they reach, if there are any.
+    pub fn local(&self) -> Option<&Local> {
+        self.layers.iter().find_map(|layer| if let Layer::Local(local) = layer { Some(local) } else { None })
     }
 
     /// The groups of those.

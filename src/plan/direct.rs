@@ -39,14 +39,14 @@ impl Bounds {
 }
 
 /// Half a unit in the last place of an f32.
-const HALF_A_UNIT: f64 = 0.5 * f32::EPSILON as f64;
+pub(super) const HALF_A_UNIT: f64 = 0.5 * f32::EPSILON as f64;
 
 /// The error, for each unit of weight, of a bell and its addition in f32 where its exponent is small: about twice the worst
 /// that tests/suite/rounding.rs has seen on Mesa's software renderer.
-const PER_WEIGHT: f64 = 4.5e-7;
+pub(super) const PER_WEIGHT: f64 = 4.5e-7;
 
 /// What is left where all is f64: the field is stored in f32, and glare is its product with a scale that is rounded too.
-const STORED: f64 = 3.0 * HALF_A_UNIT;
+pub(super) const STORED: f64 = 3.0 * HALF_A_UNIT;
 
 /// And in f64, where functions are off by some units of 2⁻⁵³, and for each addition.
 const PER_WEIGHT_DOUBLE: f64 = 2e-15;
@@ -56,11 +56,11 @@ const PER_ADDITION_DOUBLE: f64 = 0.5 * f64::EPSILON;
 /// rounded itself.
 const PER_POSITION: f64 = 2.0 * HALF_A_UNIT;
 /// And the offset, for each unit of it: a difference, times one over the size, which is rounded.
-const PER_OFFSET: f64 = 3.0 * HALF_A_UNIT;
+pub(super) const PER_OFFSET: f64 = 3.0 * HALF_A_UNIT;
 /// The square of it as a profile's table has it, both rounded: half of that in the radius.
 const PER_RADIUS: f64 = 1.5 * HALF_A_UNIT;
 /// The sine that a sine-Gaussian's mean is taken from, absolutely.
-const SINE: f64 = 3.0 * HALF_A_UNIT;
+pub(super) const SINE: f64 = 3.0 * HALF_A_UNIT;
 
 /// Ghosts that are looked at in every cell of the finer division, and in those of the coarser one.
 const FEW: usize = 4096;

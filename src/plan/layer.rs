@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::{Evaluator, Group, Lattice, Modes, Transform};
+use super::{Evaluator, Group, Lattice, Local, Modes, Transform};
 
 /// A part of the field, with the way that it is computed.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,6 +13,8 @@ pub enum Layer {
     Series(Series),
     /// The ghosts' bells themselves, summed at every pixel; groups of [`Transform::Direct`].
     Direct(Vec<Group>),
+    /// The bells, each at the pixels that it reaches.
+    Local(Local),
 }
 
 impl Layer {
@@ -26,6 +28,7 @@ impl Layer {
         match self {
             Self::Series(series) => &series.groups,
             Self::Direct(groups) => groups,
+            Self::Local(local) => &local.groups,
         }
     }
 
@@ -34,6 +37,7 @@ impl Layer {
         match self {
             Self::Series(series) => series.evaluator,
             Self::Direct(_) => Evaluator::Direct,
+            Self::Local(_) => Evaluator::Local,
         }
     }
 }

@@ -15,6 +15,7 @@ mod floor;
 mod gather;
 mod lattice;
 mod layer;
+mod local;
 mod modes;
 mod period;
 mod prediction;
@@ -43,6 +44,8 @@ pub use direct::Precision;
 pub use gather::Transform;
 pub use lattice::{Lattice, MOST_NODES};
 pub use layer::{Layer, Series};
+pub use local::Local;
+pub(crate) use local::{Area, LARGEST_POINT};
 pub use modes::{Mode, Modes};
 pub use prediction::{Prediction, Source};
 pub use request::Request;
@@ -111,7 +114,7 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
     let given = series || (asked.period.is_some() && asked.evaluator.is_some());
     let wanted = |evaluator: &Evaluator| match request.evaluator {
         Some(only) => only == *evaluator,
-        None => !(series && *evaluator == Evaluator::Direct),
+        None => !series || evaluator.is_series(),
     };
     let mut found = Found::default();
     // The direct sum costs next to nothing to plan, and what it would take bounds what planning the others may.
@@ -119,19 +122,24 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
         found.take(Evaluator::Direct, candidate(problem, &survey, None, request, Evaluator::Direct));
     }
     found.bound(&survey);
+    // What reaches few pixels is as soon planned; where it is not, the others come first.
+    let mut local = wanted(&Evaluator::Local);
+    let (least_local, work) = local::estimate(problem, &survey, request);
+    if local && survey.effort.affords(work) && found.is_beaten_by(least_local.milliseconds) {
+        found.take(Evaluator::Local, local::candidate(problem, &survey, request));
+        found.bound(&survey);
+        local = false;
+    }
     // The cheapest of them, more often than not, first. What cannot be cheaper is not planned, unless it was asked for.
     let least = |evaluator| cost::least(evaluator, problem.frame(), &request.cost_model);
     let (others, dear): (Vec<Evaluator>, Vec<Evaluator>) = [Evaluator::Grid, Evaluator::Rows, Evaluator::Series]
         .into_iter()
         .filter(wanted)
-        .partition(|&evaluator| request.evaluator.is_some() || least(evaluator) < found.least());
+        .partition(|&evaluator| request.evaluator.is_some() || found.is_beaten_by(least(evaluator)));
     for evaluator in dear {
         found.take(evaluator, Err(Error::Plan(format!("the passes of {evaluator} alone would take longer"))));
     }
-    if others.is_empty() {
-        return Ok(found.cheapest());
-    }
-    let wide = Wide::new(problem, &survey, request);
+    let wide = if others.is_empty() { None } else { Wide::new(problem, &survey, request) };
     for &evaluator in &others {
         let plan = candidate(problem, &survey, wide.as_ref(), request, evaluator).and_then(|plan| {
             // In the period that periodic bells bring with them the copies of others may land on the picture.
@@ -143,6 +151,14 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
         });
         found.take(evaluator, plan);
         found.bound(&survey);
+    }
+    if local && (request.evaluator.is_some() || found.is_beaten_by(least_local.milliseconds)) {
+        found.take(Evaluator::Local, local::candidate(problem, &survey, request));
+        local = false;
+    }
+    if local {
+        // That it cannot be cheaper is all there is to know.
+        found.others.push(least_local);
     }
     if let Some(survey) = split::apart(problem, &survey, request) {
         found.bound(&survey);
@@ -159,6 +175,8 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
 struct Found {
     plans: Vec<Plan>,
     refusals: Vec<(Evaluator, Error)>,
+    /// What was not planned, since it costs more.
+    others: Vec<Cost>,
 }
 
 impl Found {
@@ -174,15 +192,15 @@ impl Found {
         self.plans.iter().filter_map(Plan::cost).for_each(|milliseconds| survey.effort.beside(milliseconds));
     }
 
-    /// What the cheapest of the plans is expected to take, in milliseconds.
-    fn least(&self) -> f64 {
-        self.plans.iter().filter_map(Plan::cost).fold(f64::INFINITY, f64::min)
+    /// Whether something that costs at least so many milliseconds may be the cheapest.
+    fn is_beaten_by(&self, least: f64) -> bool {
+        self.plans.iter().filter_map(Plan::cost).all(|milliseconds| least < milliseconds)
     }
 
     fn cheapest(self) -> std::result::Result<Plan, Vec<Error>> {
-        let Self { plans, mut refusals } = self;
+        let Self { plans, mut refusals, others } = self;
         refusals.sort_by_key(|(evaluator, _)| Evaluator::ALL.iter().position(|other| other == evaluator));
-        let mut costs: Vec<Cost> = plans.iter().flat_map(|plan| plan.costs.clone()).collect();
+        let mut costs: Vec<Cost> = plans.iter().flat_map(|plan| plan.costs.clone()).chain(others).collect();
         costs.sort_by(|a, b| a.milliseconds.total_cmp(&b.milliseconds));
         let told = |(evaluator, error): &(Evaluator, Error)| Refusal { evaluator: *evaluator, reason: error.reason() };
         let refused = refusals.iter().map(told).collect();

@@ -5,6 +5,8 @@
 pub struct Prediction {
     /// Ghosts that are left out.
     pub dropped: f64,
+    /// Bells where they are left out, by `local`.
+    pub cut: f64,
     /// Copies of the bells, a period away.
     pub periodisation: f64,
     /// Harmonics that are left out.
@@ -22,7 +24,13 @@ pub struct Prediction {
 impl Prediction {
     /// All of it.
     pub fn total(&self) -> f64 {
-        self.dropped + self.periodisation + self.truncation + self.interpolation + self.gathering + self.single()
+        self.dropped
+            + self.cut
+            + self.periodisation
+            + self.truncation
+            + self.interpolation
+            + self.gathering
+            + self.single()
     }
 
     /// The same, but for what single precision costs in all, some of which is storage.
@@ -51,9 +59,10 @@ pub struct Source {
 impl Prediction {
     /// Every source with its error, in the order in which the data meets them.
     pub fn sources(&self) -> impl Iterator<Item = Source> + use<> {
-        let &Self { dropped, periodisation, truncation, interpolation, gathering, rounding, storage } = self;
+        let &Self { dropped, cut, periodisation, truncation, interpolation, gathering, rounding, storage } = self;
         let sources = [
             ("dropped", "ghosts left out", dropped),
+            ("cut", "bells beyond their reach", cut),
             ("periodisation", "wrapped copies", periodisation),
             ("truncation", "harmonics left out", truncation),
             ("interpolation", "looking up between the lattice's nodes", interpolation),

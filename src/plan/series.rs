@@ -31,7 +31,7 @@ pub(super) struct Wide {
 impl Wide {
     /// None where looking at every ghost's phases takes too long, or where the series is given.
     pub fn new(problem: &Problem, survey: &Survey, request: &Request) -> Option<Self> {
-        let given = request.degree.is_some() || request.evaluator == Some(Evaluator::Direct);
+        let given = request.degree.is_some() || request.evaluator.is_some_and(|evaluator| !evaluator.is_series());
         if given || !amplitudes::worth_a_try(&survey.groups) {
             return None;
         }

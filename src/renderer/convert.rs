@@ -7,10 +7,14 @@ use crate::choices::Normalize;
 use crate::gpu::composite::{Composite, Variant};
 use crate::gpu::field::Source;
 use crate::gpu::layout::{DirectGhost, DoubleGhost, SpectralGhost};
-use crate::plan::{self, Evaluator, Group, Modes, Plan, Precision, Series, Transform};
+use crate::plan::{self, Evaluator, Group, Layer, Local, Modes, Plan, Precision, Series, Transform};
 use crate::scene::Ghost;
 use crate::series::moments::{Cells, Point, Sums};
 use crate::series::{Bell, phase};
+
+/// A sum of layers, one of them local, and one that is missing.
+const LAYERS: &str = "\"evaluators/layers.glsl\"";
+const NONE: &str = "\"evaluators/none.glsl\"";
 
 /// The GLSL function that a plan's evaluator has readied, `direct` beside it where some ghosts are summed; there may be too
 /// many of them for a uniform block.
@@ -18,16 +22,21 @@ pub(super) fn source(plan: &Plan, many_ghosts: bool) -> Source {
     let double = plan.precision == Precision::Double;
     let direct = if double { "\"evaluators/direct_double.glsl\"" } else { "\"evaluators/direct.glsl\"" };
     let summed = |evaluator| Source { bell: Some(bell_file(plan)), many_ghosts, double, ..Source::of(evaluator) };
-    let series = match plan.evaluator() {
-        Evaluator::Direct => return summed(direct),
+    let series = plan.series().map(|series| match series.evaluator {
         Evaluator::Series => "\"evaluators/series.glsl\"",
         Evaluator::Rows => "\"evaluators/rows.glsl\"",
-        Evaluator::Grid => "\"evaluators/grid.glsl\"",
-    };
-    if plan.summed() == 0 {
-        return Source::of(series);
+        _ => "\"evaluators/grid.glsl\"",
+    });
+    let has_direct = plan.layers().iter().any(|layer| matches!(layer, Layer::Direct(_)));
+    match (series, has_direct, plan.local().is_some()) {
+        (Some(series), false, false) => Source::of(series),
+        (Some(series), true, false) => Source { parts: Some([series, direct]), ..summed("\"evaluators/split.glsl\"") },
+        (None, _, false) => summed(direct),
+        (None, false, true) => Source::of("\"evaluators/local.glsl\""),
+        (None, true, true) => Source { parts: Some([NONE, direct]), ..summed(LAYERS) },
+        (Some(series), true, true) => Source { parts: Some([series, direct]), ..summed(LAYERS) },
+        (Some(series), false, true) => Source { parts: Some([series, NONE]), ..Source::of(LAYERS) },
     }
-    Source { parts: Some([series, direct]), ..summed("\"evaluators/split.glsl\"") }
 }
 
 /// The one bell that the summed ghosts have, or all of them.
@@ -36,6 +45,13 @@ fn bell_file(plan: &Plan) -> &'static str {
         Some(bell) => bell.shape().shader(),
         None => "bells/any.glsl",
     }
+}
+
+/// The one bell that the ghosts of a local layer have, or all of them.
+pub(super) fn local_bell(local: &Local) -> &'static str {
+    let bell = local.groups.first().map_or(&Bell::Gaussian, |group| &group.bell);
+    let same = local.groups.iter().all(|group| group.bell.kind() == bell.kind());
+    if same { bell.shape().shader() } else { "bells/any.glsl" }
 }
 
 /// The bell of the summed ghosts if they are of one kind.
@@ -161,6 +177,6 @@ pub(super) fn uniforms(plan: &Plan, settings: &Settings) -> Composite {
     }
 }
 
-fn weight(ghost: &Ghost, plan: &Plan) -> [f64; 3] {
+pub(super) fn weight(ghost: &Ghost, plan: &Plan) -> [f64; 3] {
     plan::weight(ghost, plan.scale)
 }

@@ -2,10 +2,11 @@
 
 use std::rc::Rc;
 
-use super::{convert, tiles};
+use super::{convert, local, tiles};
 use crate::frame::{Frame, Window};
 use crate::gpu::evaluators::Evaluators;
 use crate::gpu::field::{FieldPass, Source};
+use crate::gpu::local::LocalPass;
 use crate::gpu::range::RangePass;
 use crate::gpu::runner::Runner;
 use crate::gpu::spectrum::{Coefficients, Ghosts, Spectrum, SpectrumGroup};
@@ -20,6 +21,9 @@ pub struct Field {
     evaluators: Evaluators,
     pub(super) values: FieldPass,
     pub(super) range: RangePass,
+    local: LocalPass,
+    /// The frame that the ghosts of a local layer were placed in.
+    localised: Option<Frame>,
     scene: Option<Plan>,
     /// The frame whose values are held, if any.
     held: Option<Frame>,
@@ -40,6 +44,8 @@ impl Field {
             evaluators: Evaluators::new(&runner)?,
             values: FieldPass::new(&runner)?,
             range: RangePass::new(&runner)?,
+            local: LocalPass::new(&runner)?,
+            localised: None,
             scene: None,
             held: None,
             ranged: None,
@@ -57,8 +63,13 @@ impl Field {
             return Ok(());
         }
         self.forget_scene();
-        if plan.series().is_none() || plan.summed() > 0 {
+        if plan.series().is_none() && plan.local().is_none() || plan.summed() > 0 {
             self.upload_summed(plan)?;
+        }
+        if let Some(local) = plan.local() {
+            let frame = plan.problem().frame();
+            local::upload(plan, local, frame, &mut self.local, &self.runner)?;
+            self.localised = Some(frame);
         }
         if let Some(series) = plan.series() {
             self.compute_spectrum(plan, series)?;
@@ -285,14 +296,23 @@ impl Field {
     pub(super) fn evaluate(&mut self, frame: Frame, tile: Window) -> Result<Source> {
         let Some(plan) = &self.scene else { return Err(Error::Gl("the renderer has no scene".into())) };
         let (runner, spectrum, evaluators) = (&self.runner, &self.spectrum, &mut self.evaluators);
-        if plan.series().is_none() || plan.summed() > 0 {
+        // First, since what it draws with is bound where others bind theirs.
+        if let Some(local) = plan.local() {
+            if self.localised != Some(frame) {
+                local::upload(plan, local, frame, &mut self.local, runner)?;
+                self.localised = Some(frame);
+            }
+            let (corner, size) = ([tile.x, tile.y], [tile.width, tile.height]);
+            self.local.draw(runner, convert::local_bell(local), corner, size, frame)?;
+        }
+        if plan.series().is_none() && plan.local().is_none() || plan.summed() > 0 {
             evaluators.direct([tile.x, tile.y], frame)?;
         }
         if let Some(series) = plan.series() {
             let columns = || tiles::phases(tile.width, |i| frame.x(f64::from(tile.x) + i), series.period.x);
             let rows = || tiles::phases(tile.height, |j| frame.y(f64::from(tile.y) + j), series.period.y);
             match (series.evaluator, &series.lattice) {
-                (Evaluator::Direct, _) => {}
+                (Evaluator::Direct | Evaluator::Local, _) => {}
                 (Evaluator::Series, _) => evaluators.series(runner, [&columns(), &rows()], spectrum)?,
                 (Evaluator::Rows, _) => evaluators.rows(runner, [&columns(), &rows()], spectrum)?,
                 (Evaluator::Grid, Some(lattice)) => {

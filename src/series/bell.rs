@@ -112,6 +112,10 @@ pub trait Shape: Sync {
         f64::INFINITY
     }
 
+    /// How far from its centre the bell may be above `share` > 0 of its peak, in sizes: no value at an offset of more than
+    /// that along either axis is. Infinite where the bell comes back.
+    fn reach(&self, share: f64) -> f64;
+
     /// What the bell falls by all at once where it ends.
     fn jump(&self) -> f64 {
         0.0

@@ -63,6 +63,10 @@ impl Shape for CosineSquared {
         1.0
     }
 
+    fn reach(&self, share: f64) -> f64 {
+        share.min(1.0).sqrt().acos() / FRAC_PI_2
+    }
+
     fn edges(&self) -> Vec<f64> {
         vec![0.5, 0.97]
     }

@@ -60,6 +60,10 @@ impl Shape for Gaussian {
         if distance <= 1.0 { E.sqrt().recip() } else { distance * (-0.5 * distance * distance).exp() }
     }
 
+    fn reach(&self, share: f64) -> f64 {
+        (-2.0 * share.ln()).max(0.0).sqrt()
+    }
+
     fn integral(&self, size: DVec2) -> f64 {
         TAU * size.element_product()
     }

@@ -48,6 +48,10 @@ impl Shape for Parabola {
         1.0
     }
 
+    fn reach(&self, share: f64) -> f64 {
+        (1.0 - share).max(0.0).sqrt()
+    }
+
     fn edges(&self) -> Vec<f64> {
         vec![0.97, 1.0]
     }

@@ -144,6 +144,10 @@ impl<B: Periodic> Shape for B {
         0.61
     }
 
+    fn reach(&self, _share: f64) -> f64 {
+        f64::INFINITY
+    }
+
     fn integral(&self, size: DVec2) -> f64 {
         let period = Periodic::period(self);
         let size = size / period;

@@ -297,6 +297,12 @@ impl Shape for Profile {
         self.steepest[self.radii[1..].partition_point(|&radius| radius <= distance)]
     }
 
+    /// The radius of the first row from which on no value is above it: between rows the profile rises or falls all the way.
+    fn reach(&self, share: f64) -> f64 {
+        let row = self.reach.partition_point(|&largest| largest > share);
+        self.radii[row.min(self.radii.len() - 1)]
+    }
+
     fn ends(&self) -> f64 {
         self.radius()
     }

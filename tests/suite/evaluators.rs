@@ -63,6 +63,10 @@ fn keep_the_promise(width: u32, height: u32, counts: &[usize], tolerances: &[f64
         let ghosts = scenes::random(count as u64 + 1, count, frame);
         let name = format!("{width}x{height}, K = {count}");
         for evaluator in Evaluator::ALL {
+            // Where most of them reach all of a large picture it is no faster than the direct sum, and looks at every pixel.
+            if evaluator == Evaluator::Local && count * frame.window.pixels() > 100_000_000 {
+                continue;
+            }
             for &tolerance in tolerances {
                 match Case::new(&name, &ghosts, frame, tolerance, evaluator) {
                     Some(case) => cases.push(case),
@@ -136,7 +140,7 @@ fn the_glare_of_small_pictures_keeps_the_promise_at_every_pixel() {
                 within(plan.predicted.total(), &name, &pixels, &exact, &actual).relative
             })
         });
-        println!("{width}x{height} at {tolerance:e}, direct, series, rows, grid: {worst:?}");
+        println!("{width}x{height} at {tolerance:e}, direct, series, rows, grid, local: {worst:?}");
     }
 }
 

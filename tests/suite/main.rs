@@ -17,6 +17,7 @@ mod golden;
 mod graf;
 mod layers;
 mod light;
+mod local;
 mod moments;
 mod numeric;
 mod order;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glow::HasContext as _;
 
 use super::{Backend, Device, Platform};
-use crate::gpu::layout::PICTURE;
+use crate::gpu::layout::LAST_UNIT;
 use crate::{Error, Result};
 
 /// Nothing to keep alive: the context is the host's.
@@ -72,8 +72,7 @@ impl Device {
             ] {
                 gl.pixel_store_i32(name, value);
             }
-            // The picture's is the last of the units.
-            for unit in 0..=PICTURE.1 {
+            for unit in 0..=LAST_UNIT {
                 gl.bind_sampler(unit, None);
             }
             for capability in [

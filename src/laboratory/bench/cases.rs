@@ -110,7 +110,7 @@ pub(super) fn by_hand(ghosts: &[Ghost], frame: Frame, evaluator: Evaluator) -> R
 }
 
 pub(super) fn described(plan: &Plan) -> String {
-    if plan.evaluator() == Evaluator::Direct {
+    if !plan.evaluator().is_series() {
         return format!("{} ghosts reach the picture.", plan.ghosts());
     }
     let [n, m] = plan.degree();

@@ -101,6 +101,14 @@ impl Actor {
         self.finish()
     }
 
+    /// The spectrum anew, then the field alone.
+    pub fn field(&mut self) -> Result<()> {
+        self.renderer.field.forget_scene();
+        self.renderer.field.set_scene(&self.plan)?;
+        self.renderer.field.hold(self.plan.problem().frame())?;
+        self.finish()
+    }
+
     /// The spectrum anew, then the picture.
     pub fn everything(&mut self) -> Result<()> {
         self.renderer.field.forget_scene();

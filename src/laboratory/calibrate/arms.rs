@@ -74,6 +74,8 @@ pub(super) mod place {
     pub const SPECTRUM: [usize; 2] = [12, 13];
     pub const MOMENTS: [usize; 2] = [14, 15];
     pub const TINY: usize = 16;
+    /// A few small ghosts; many; a few large ones; a few small ones on a wide picture.
+    pub const LOCAL: [usize; 4] = [17, 18, 19, 20];
 }
 
 /// The narrow picture, the wide one and the tiny one, in pixels: a graphics card needs more to do.
@@ -92,10 +94,13 @@ impl Arms {
             renderer.load(*frame, &vec![[0.5; 4]; frame.window.pixels()])?;
             Ok(renderer)
         };
-        let arm = |work, picture: usize, count, plan: &dyn Fn(&[Ghost], Frame) -> Result<Plan>| {
+        let sized = |work, picture: usize, count, size, plan: &dyn Fn(&[Ghost], Frame) -> Result<Plan>| {
             let frame = frames[picture];
-            let ghosts = scattered(count, 0.3, frame);
+            let ghosts = scattered(count, size, frame);
             Ok(Arm { work, picture, plan: plan(&ghosts, frame)?, repeats: 1 })
+        };
+        let arm = |work, picture, count, plan: &dyn Fn(&[Ghost], Frame) -> Result<Plan>| {
+            sized(work, picture, count, 0.3, plan)
         };
         let few = |evaluator, degree| move |ghosts: &[Ghost], frame| by_hand(ghosts, frame, evaluator, degree);
         let (series, rows) =
@@ -118,6 +123,10 @@ impl Arms {
             arm(Work::Spectrum, 0, 1000, &gathered),
             arm(Work::Spectrum, 0, 11_000, &gathered),
             arm(Work::Everything, 2, 4, &|ghosts, frame| grid(ghosts, frame, 8)),
+            sized(Work::Everything, 0, 60, SMALL, &local),
+            sized(Work::Everything, 0, 3000, SMALL, &local),
+            sized(Work::Everything, 0, 60, 0.3, &local),
+            sized(Work::Everything, 1, 60, SMALL, &local),
         ]
         .into_iter()
         .collect();
@@ -174,6 +183,14 @@ impl Arms {
 /// The direct sum of them all.
 fn direct(ghosts: &[Ghost], frame: Frame) -> Result<Plan> {
     plan(&Problem::new(ghosts, frame), &Request { evaluator: Some(Evaluator::Direct), ..Request::new(1e-3) })
+}
+
+/// Small ghosts: of a pixel or two.
+const SMALL: f64 = 0.01;
+
+/// Each where it reaches.
+fn local(ghosts: &[Ghost], frame: Frame) -> Result<Plan> {
+    plan(&Problem::new(ghosts, frame), &Request { evaluator: Some(Evaluator::Local), ..Request::new(1e-2) })
 }
 
 /// A series of a given degree, whose error does not matter here.

@@ -66,8 +66,17 @@ fn constants(arms: &[Arm], times: &[f64]) -> [f64; CostModel::COUNT] {
     let modes = arms[SPECTRUM[0]].plan.terms() as f64;
     let spectrum = more(SPECTRUM) / (ghosts(SPECTRUM) * modes);
     let moment = more(MOMENTS) / (ghosts(MOMENTS) * moments(&arms[MOMENTS[0]].plan));
+    let [one, many, large, spread] = LOCAL;
+    let reached = |[low, high]: [usize; 2]| {
+        let [low, high] = [low, high].map(|index| arms[index].plan.local().map_or(0.0, |local| local.reached));
+        high - low
+    };
+    let splat = more([one, large]) / reached([one, large]);
+    let quad = (more([one, many]) - reached([one, many]) * splat) / ghosts([one, many]);
+    let beside = reached([one, spread]) * splat + more([COPY, COPY_WIDE]);
+    let canvas = (more([one, spread]) - beside) / (arms[spread].pixels() - arms[one].pixels());
     let pass = 1e6 * times[TINY] / GRID_PASSES;
-    [bell, term, harmonic, profile, strip, interpolation, spectrum, moment, pass]
+    [bell, term, harmonic, profile, strip, interpolation, spectrum, moment, splat, quad, canvas, pass]
 }
 
 /// The medians of the rounds; what is lost in noise follows the others.
@@ -109,7 +118,7 @@ mod tests {
         let [expected, got] = [built_in.map(|value| 0.25 * value), fitted.model().values()];
         assert!(expected.iter().zip(got).all(|(a, b)| (a / b - 1.0).abs() < 1e-12), "{got:?}");
         let scaled: Vec<_> = fitted.constants.iter().map(|constant| constant.spread.is_none()).collect();
-        assert_eq!(scaled, [false, false, false, false, true, false, false, false, false]);
+        assert!(scaled.iter().enumerate().all(|(k, scaled)| *scaled == (k == 4)), "{scaled:?}");
         assert!(fitted.model().is_sound());
     }
 
@@ -157,6 +166,10 @@ mod tests {
             k if SPECTRUM.contains(&k) => plan.ghosts() as f64 * terms * model.spectrum,
             k if MOMENTS.contains(&k) => plan.ghosts() as f64 * moments(plan) * model.moment,
             TINY => GRID_PASSES * model.pass,
+            k if LOCAL.contains(&k) => {
+                let ghosts = plan.ghosts() as f64 * model.quad + plan.local().unwrap().reached * model.splat;
+                base + ghosts + arm.pixels() * model.canvas
+            }
             _ => {
                 let [columns, lines] = plan.lattice().unwrap().nodes.map(f64::from);
                 base + rows(lines, columns) + columns * arm.rows() * model.strip + arm.pixels() * model.interpolation

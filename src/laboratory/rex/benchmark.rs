@@ -145,7 +145,7 @@ fn canvas(size: u32) -> Canvas {
 }
 
 fn name(evaluator: Evaluator) -> &'static str {
-    if evaluator == Evaluator::Direct { "non-parametric" } else { "parametric" }
+    if !evaluator.is_series() { "non-parametric" } else { "parametric" }
 }
 
 /// Milliseconds with three digits.

@@ -96,7 +96,7 @@ impl Bench {
     /// The part of an arm's picture that there is patience for.
     fn part(&mut self, arm: &Arm<'_>) -> Result<Window> {
         let whole = arm.frame().window;
-        if !matches!(arm.plan.evaluator(), Evaluator::Direct | Evaluator::Series) {
+        if !matches!(arm.plan.evaluator(), Evaluator::Direct | Evaluator::Series | Evaluator::Local) {
             return Ok(whole);
         }
         let least = whole.height.div_ceil(TRY);

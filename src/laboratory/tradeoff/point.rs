@@ -97,7 +97,7 @@ pub struct Point {
 impl Point {
     /// A plan, not measured yet.
     pub(super) fn planned(sweep: Sweep, frame: Frame, asked: Option<f64>, plan: &Plan) -> Self {
-        let series = plan.evaluator() != Evaluator::Direct;
+        let series = plan.evaluator().is_series();
         Self {
             evaluator: Some(plan.evaluator()),
             period_x: series.then_some(plan.period().x),

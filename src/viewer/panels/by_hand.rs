@@ -13,7 +13,7 @@ use crate::viewer::stage::Stage;
 fn name(evaluator: Option<Evaluator>) -> String {
     match evaluator {
         None => "planned".into(),
-        Some(Evaluator::Direct) => "direct (non-parametric)".into(),
+        Some(bells) if !bells.is_series() => format!("{bells} (non-parametric)"),
         Some(series) => format!("{series} (parametric)"),
     }
 }
@@ -31,7 +31,7 @@ pub fn show(ui: &mut Ui, document: &mut Document, stage: &Stage) {
 fn evaluator(ui: &mut Ui, document: &mut Document) {
     let all: Vec<_> = std::iter::once(None).chain(Evaluator::ALL.map(Some)).map(|one| (one, name(one))).collect();
     let choices: Vec<_> = all.iter().map(|(one, name)| (*one, name.as_str(), "")).collect();
-    let about = "Non-parametric sums the bells at every pixel, parametric sums their series.";
+    let about = "Non-parametric sums the bells, at every pixel or where they reach, parametric sums their series.";
     let (opened, evaluator) = (document.opened.accuracy.evaluator, &mut document.look.accuracy.evaluator);
     choice(ui, "Evaluator", about, evaluator, &choices, opened);
 }

@@ -90,7 +90,7 @@ impl Section {
 /// The error that the series in the plan's period is predicted to have, for degrees about the plan's.
 pub(super) fn convergence(plan: &Plan) -> Vec<Degree> {
     const STEPS: u32 = 12;
-    let series = plan.evaluator() != Evaluator::Direct;
+    let series = plan.evaluator().is_series();
     let around = if series { plan.degree()[0].max(plan.degree()[1]).max(8) } else { 64 };
     let most = (around + around / 2).min(HIGHEST_DEGREE);
     let request = Request {

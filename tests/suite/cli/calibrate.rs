@@ -73,6 +73,19 @@ fn what_was_kept_decides_for_its_renderer_and_version_only() {
         (&by_older["plan"]["evaluator"], &by_older["model"]["source"]),
         (&json!("direct"), &json!("calibrated"))
     );
+    // And one from before there was `local` says so; what it lacks is to the others as it is in the built-in model.
+    let mut before = constants(|model| *model = CostModel::from_values(model.values().map(|value| 0.5 * value)));
+    for name in ["splat", "quad", "canvas"] {
+        before.as_object_mut().expect("an object").remove(name);
+    }
+    keep(&place, env!("CARGO_PKG_VERSION"), &before);
+    let by_old = place.vglare(&["plan", "in.exr", "--json"]).succeeded();
+    assert!(by_old.stderr().contains("before there was `local`"), "{}", by_old.stderr());
+    let by_old: Value = serde_json::from_str(&by_old.stdout()).expect("JSON");
+    let of_local =
+        ["splat", "quad", "canvas"].map(|name| by_old["model"]["nanoseconds"][name].as_f64().expect("a number"));
+    let built_in = CostModel::default();
+    assert_eq!(of_local, [built_in.splat, built_in.quad, built_in.canvas].map(|value| 0.5 * value));
     keep(&place, "0.0.0", &cheap_bells);
     let other = plan(&[]);
     assert_eq!((&other["plan"]["evaluator"], &other["model"]["source"]), (&json!("grid"), &json!("built-in")));

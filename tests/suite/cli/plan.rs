@@ -52,7 +52,8 @@ fn what_plan_tells_is_what_apply_does() {
         place.vglare(&[&apply, options].concat()).succeeded();
         let report = place.read_json("report.json");
         assert_eq!(told["plan"], report["plan"], "{options:?}");
-        let bounds = ["dropped", "periodisation", "truncation", "interpolation", "gathering", "rounding", "storage"];
+        let bounds =
+            ["dropped", "cut", "periodisation", "truncation", "interpolation", "gathering", "rounding", "storage"];
         let sum: f64 = bounds.iter().map(|source| number(&told, &format!("/plan/predicted/{source}"))).sum();
         assert!((sum - number(&told, "/predicted_total")).abs() <= 1e-12, "{told}");
         assert_eq!(report["cost"]["model"]["source"], "built-in");

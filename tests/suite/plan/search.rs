@@ -115,7 +115,7 @@ fn what_is_refused_is_named_with_the_reason() {
     assert_eq!(refused, [Evaluator::Direct, Evaluator::Series]);
     assert!(chosen.refused.iter().all(|refusal| refusal.reason.contains("loop")), "{:?}", chosen.refused);
     let whole = chosen.costs.iter().filter(|cost| cost.summed == 0);
-    assert_eq!(whole.count() + chosen.refused.len(), 4);
+    assert_eq!(whole.count() + chosen.refused.len(), 5);
     assert_eq!(plan(&ghosts, FRAME, &Request::new(1e-3)).unwrap().refused, []);
 }
 
@@ -127,7 +127,7 @@ fn the_cost_model_decides() {
     assert!(built_in.is_sound());
     let cheap_bells = with(CostModel { bell: 1e-9, pass: 1.0, ..built_in });
     assert_eq!(cheap_bells.evaluator(), Evaluator::Direct);
-    let dear = CostModel { bell: 1e9, term: 1e9, harmonic: 1e9, ..built_in };
+    let dear = CostModel { bell: 1e9, splat: 1e9, term: 1e9, harmonic: 1e9, ..built_in };
     assert_eq!(with(dear).evaluator(), Evaluator::Grid);
     // Twice as slow a machine, twice the cost, the same plan.
     let (once, twice) = (with(built_in), with(CostModel::from_values(built_in.values().map(|value| 2.0 * value))));

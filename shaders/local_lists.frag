@@ -1,0 +1,48 @@
+// `local` in 64-bit floats: at each pixel the ghosts that its block of pixels has in its list. The formulas, and their order,
+// are those of `frame` and `reference`.
+#include BELL
+
+struct Ghost {
+    dvec2 center;
+    dvec2 size;
+    double red, green, blue; // radiance
+    uint bell;               // where its parameters begin, and its kind where there are several
+    uint pad;
+};
+layout(std430, binding = BINDING_GHOSTS) readonly buffer Ghosts {
+    Ghost ghosts[];
+};
+// Where the list of each block begins, in order, and where the last one ends; then the lists, of multiples of DIRECT_STEP.
+layout(std430, binding = BINDING_PARTIALS) readonly buffer Lists {
+    uint lists[];
+};
+layout(std140, binding = BINDING_PASS) uniform Pass {
+    ivec2 corner; // of the tile, in pixels of the picture
+    ivec2 size;   // of the picture
+    ivec2 first;  // pixel of the window
+    int columns;  // of blocks
+    int pad;
+    double aspect; // a pixel's width over its height
+};
+layout(location = 0) out vec4 value;
+
+void main() {
+    ivec2 p = corner + ivec2(gl_FragCoord.xy);
+    ivec2 block = (p - first) / LOCAL_BLOCK;
+    int index = block.y * columns + block.x;
+    uint last = lists[index + 1];
+    precise double x = aspect * double(2 * p.x + 1 - size.x) / double(size.y);
+    precise double y = double(size.y - 2 * p.y - 1) / double(size.y);
+    double red = 0.0lf, green = 0.0lf, blue = 0.0lf;
+    for (uint at = lists[index]; at < last; at += DIRECT_STEP) {
+        for (uint k = 0u; k < DIRECT_STEP; ++k) {
+            Ghost ghost = ghosts[lists[at + k]];
+            precise dvec2 offset = dvec2(x, y) - ghost.center;
+            double bell = bell_value(offset, ghost.size, ghost.bell);
+            red += ghost.red * bell;
+            green += ghost.green * bell;
+            blue += ghost.blue * bell;
+        }
+    }
+    value = vec4(red, green, blue, 0.0);
+}

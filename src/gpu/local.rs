@@ -1,0 +1,267 @@
+//! `local`: ghosts drawn where they reach, one on top of the other, onto a canvas; or, in 64-bit floats, which cannot be
+//! blended, summed at each pixel from the list of its block.
+
+use std::ops::Range;
+
+use glow::HasContext as _;
+
+use super::context::Device;
+use super::evaluators::{STEP, Words, within_rounds};
+use super::layout::{CANVAS, DoubleGhost, GHOSTS, LARGEST_POINT, LOCAL_BLOCK, LocalGhost, PARTIALS, PASS, SHAPES};
+use super::resource::{Attribute, Buffer, Scratch, Texel, Texture};
+use super::runner::Runner;
+use crate::frame::Frame;
+use crate::{Error, Result};
+
+/// What points reach beyond the tile that their centres lie in, at most, in pixels.
+const MARGIN: i32 = LARGEST_POINT / 2;
+
+/// Pixels that one draw may add to: drivers reset themselves when one takes seconds.
+const MOST_PIXELS: f64 = 2e9;
+/// And bells in 64-bit floats.
+const MOST_LISTED: f64 = 2e8;
+
+/// The attributes of `local.vert`, in words of a [`LocalGhost`].
+const ATTRIBUTES: [Attribute; 5] = [
+    Attribute { location: 0, kind: glow::INT, count: 4, first: 0 },
+    Attribute { location: 1, kind: glow::INT, count: 2, first: 4 },
+    Attribute { location: 2, kind: glow::FLOAT, count: 4, first: 6 },
+    Attribute { location: 3, kind: glow::FLOAT, count: 3, first: 10 },
+    Attribute { location: 4, kind: glow::UNSIGNED_INT, count: 1, first: 13 },
+];
+
+/// Ghosts to be drawn: those that are points first.
+pub(crate) struct Drawn<'a> {
+    pub ghosts: &'a [LocalGhost],
+    pub points: usize,
+}
+
+/// Ghosts in 64-bit floats, and for each block of pixels, row by row, where its list begins among the numbers that follow; and
+/// the last of the ghosts is none at all.
+pub(crate) struct Listed<'a> {
+    pub ghosts: &'a [DoubleGhost],
+    pub lists: &'a [u32],
+    pub blocks: [u32; 2],
+}
+
+/// What is on the device of either.
+enum Scene {
+    Nothing,
+    Drawn { points: Vec<Range<usize>>, quads: Vec<Range<usize>> },
+    Listed { columns: u32, bands: u32 },
+}
+
+/// Draws the ghosts of `local`.
+pub(crate) struct LocalPass {
+    array: glow::VertexArray,
+    ghosts: Buffer<LocalGhost>,
+    doubles: Buffer<DoubleGhost>,
+    lists: Buffer<u32>,
+    shapes: Buffer<Words>,
+    tile: Buffer<[i32; 12]>,
+    canvas: Scratch,
+    scene: Scene,
+    /// Whether points are as large as they may be asked to.
+    points: bool,
+    blends: bool,
+    device: std::rc::Rc<Device>,
+}
+
+impl LocalPass {
+    pub fn new(runner: &Runner) -> Result<Self> {
+        let device = runner.device();
+        let (mut sizes, mut support) = ([0.0; 2], [0]);
+        // SAFETY: the device keeps its context current on this thread; the range is of two numbers, and the support one.
+        let array = unsafe {
+            let (gl, target) = (device.gl(), glow::TEXTURE_2D);
+            gl.get_parameter_f32_slice(glow::POINT_SIZE_RANGE, &mut sizes);
+            gl.get_internal_format_i32_slice(target, glow::RGBA32F, glow::FRAMEBUFFER_BLEND, &mut support);
+            gl.create_vertex_array()
+        };
+        Ok(Self {
+            array: array.map_err(|reason| Error::Gl(format!("vertex array: {reason}")))?,
+            ghosts: Buffer::new(device, 0)?,
+            doubles: Buffer::new(device, 0)?,
+            lists: Buffer::new(device, 0)?,
+            shapes: Buffer::new(device, 0)?,
+            tile: Buffer::new(device, 1)?,
+            canvas: Scratch::default(),
+            scene: Scene::Nothing,
+            blends: [glow::FULL_SUPPORT, glow::CAVEAT_SUPPORT].contains(&(support[0] as u32)),
+            points: sizes[1] >= LARGEST_POINT as f32,
+            device: device.clone(),
+        })
+    }
+
+    /// Whether the driver adds to what is on a canvas; OpenGL 4.3 lets it say that it does not.
+    pub fn can_draw(&self) -> bool {
+        self.blends
+    }
+
+    /// Uploads ghosts that are drawn, and what their bells need to know beside.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the driver refuses.
+    pub fn set_drawn(&mut self, Drawn { ghosts, points }: &Drawn<'_>, shapes: &[[f32; 4]]) -> Result<()> {
+        self.ghosts.store(ghosts)?;
+        self.shapes.store(bytemuck::cast_slice(shapes))?;
+        let (points, quads) = (batches(&ghosts[..*points], 0), batches(&ghosts[*points..], *points));
+        self.scene = Scene::Drawn { points, quads };
+        Ok(())
+    }
+
+    /// Uploads ghosts that are listed, and what their bells need to know beside.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the driver refuses, or a list is longer than the software renderer goes through for one pixel.
+    pub fn set_listed(&mut self, runner: &Runner, listed: &Listed<'_>, shapes: &[[f64; 4]]) -> Result<()> {
+        let [columns, rows] = listed.blocks;
+        let starts = &listed.lists[..=(columns * rows) as usize];
+        let longest = starts.windows(2).map(|pair| (pair[1] - pair[0]) as usize).max().unwrap_or(0);
+        within_rounds(runner, longest / STEP, "local", longest, "ghosts")?;
+        self.doubles.store(listed.ghosts)?;
+        self.lists.store(listed.lists)?;
+        self.shapes.store(bytemuck::cast_slice(shapes))?;
+        let bells = f64::from(LOCAL_BLOCK * LOCAL_BLOCK) * (listed.lists.len() - starts.len()) as f64;
+        self.scene = Scene::Listed { columns, bands: (bells / MOST_LISTED).ceil() as u32 };
+        Ok(())
+    }
+
+    /// Draws the canvas of a tile, whose first pixel is `corner` in the picture of a frame, and binds it.
+    ///
+    /// # Errors
+    /// [`Error::Gl`] where the driver refuses.
+    pub fn draw(
+        &mut self,
+        runner: &Runner,
+        bell: &str,
+        corner: [i32; 2],
+        [width, height]: [u32; 2],
+        frame: Frame,
+    ) -> Result<()> {
+        let canvas = self.canvas.get(runner.device(), Texel::Rgba, width, height)?;
+        self.shapes.bind_storage(SHAPES);
+        self.tile.bind_uniform(PASS);
+        match &self.scene {
+            Scene::Nothing => canvas.clear(0.0),
+            Scene::Drawn { points, quads } => {
+                let size = [width, height].map(|side| side as i32);
+                let widest = self.device.info().limits.viewport;
+                let fits = [0, 1].iter().all(|&axis| size[axis] + 2 * MARGIN <= widest[axis] as i32);
+                canvas.clear(0.0);
+                let mut one = |ranges: &[Range<usize>], points: bool| {
+                    let margin = if points { MARGIN } else { 0 };
+                    self.tile.store(&[[corner[0], corner[1], size[0], size[1], margin, 0, 0, 0, 0, 0, 0, 0]])?;
+                    let how = How { points, margin, array: self.array, bell };
+                    add(runner, canvas, &self.ghosts, ranges, &how)
+                };
+                one(points, self.points && fits)?;
+                one(quads, false)?;
+            }
+            &Scene::Listed { columns, bands } => {
+                let (window, aspect) = (frame.window, frame.pixel_aspect.to_bits());
+                let [low, high] = [aspect as u32 as i32, (aspect >> 32) as i32];
+                let [x, y] = corner;
+                let size = [frame.width as i32, frame.height as i32];
+                let words = [x, y, size[0], size[1], window.x, window.y, columns as i32, 0, low, high, 0, 0];
+                self.tile.store(&[words])?;
+                self.doubles.bind_storage(GHOSTS);
+                self.lists.bind_storage(PARTIALS);
+                runner.draw_in_bands(
+                    "local_lists.frag",
+                    &[("BELL", bell), ("DOUBLE", "1")],
+                    canvas,
+                    bands.min(height),
+                )?;
+            }
+        }
+        canvas.bind(CANVAS);
+        Ok(())
+    }
+}
+
+impl Drop for LocalPass {
+    fn drop(&mut self) {
+        if let Some(gl) = self.device.to_free() {
+            // SAFETY: the device's context is there and current, and nothing uses what is freed from here on.
+            unsafe { gl.delete_vertex_array(self.array) }
+        }
+    }
+}
+
+/// How ghosts are drawn.
+struct How<'a> {
+    points: bool,
+    margin: i32,
+    array: glow::VertexArray,
+    bell: &'a str,
+}
+
+/// Adds ghosts to a canvas.
+fn add(
+    runner: &Runner,
+    canvas: &Texture,
+    ghosts: &Buffer<LocalGhost>,
+    ranges: &[Range<usize>],
+    how: &How<'_>,
+) -> Result<()> {
+    if ranges.is_empty() {
+        return Ok(());
+    }
+    let points: &[(&str, &str)] = if how.points { &[("POINTS", "1")] } else { &[] };
+    let defines: Vec<_> = std::iter::once(("BELL", how.bell)).chain(points.iter().copied()).collect();
+    let program = runner.drawn_by("local.vert", "local.frag", &defines)?;
+    let (gl, margin) = (runner.device().gl(), how.margin);
+    let (width, height) = (canvas.level_width(0) as i32, canvas.level_height(0) as i32);
+    runner.run("local", || {
+        canvas.target(0);
+        program.bind();
+        // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
+        unsafe { gl.bind_vertex_array(Some(how.array)) };
+        ghosts.bind_attributes(&ATTRIBUTES, u32::from(!how.points));
+        // SAFETY: the device keeps its context current on this thread, and the array and what it points to are there.
+        unsafe {
+            // Points are clipped by their centres, and these may lie beyond the tile.
+            gl.viewport(-margin, -margin, width + 2 * margin, height + 2 * margin);
+            gl.enable(glow::BLEND);
+            gl.blend_equation(glow::FUNC_ADD);
+            gl.blend_func(glow::ONE, glow::ONE);
+            if how.points {
+                gl.enable(glow::PROGRAM_POINT_SIZE);
+            }
+            for (index, range) in ranges.iter().enumerate() {
+                let (first, count) = (range.start, range.len() as i32);
+                if index > 0 {
+                    gl.flush();
+                }
+                if how.points {
+                    gl.draw_arrays(glow::POINTS, first as i32, count);
+                } else {
+                    gl.draw_arrays_instanced_base_instance(glow::TRIANGLE_STRIP, 0, 4, count, first as u32);
+                }
+            }
+            gl.disable(glow::PROGRAM_POINT_SIZE);
+            gl.blend_func(glow::ONE, glow::ZERO);
+            gl.disable(glow::BLEND);
+        }
+    });
+    Ok(())
+}
+
+/// Ghosts as so many draws; `first` is the place of the first of them.
+fn batches(ghosts: &[LocalGhost], first: usize) -> Vec<Range<usize>> {
+    let (mut ranges, mut pixels, mut start) = (Vec::new(), 0.0, 0);
+    for (index, ghost) in ghosts.iter().enumerate() {
+        let [left, top, right, bottom] = ghost.area.map(f64::from);
+        let more = (right - left) * (bottom - top);
+        if pixels + more > MOST_PIXELS && index > start {
+            ranges.push(first + start..first + index);
+            (pixels, start) = (0.0, index);
+        }
+        pixels += more;
+    }
+    if start < ghosts.len() {
+        ranges.push(first + start..first + ghosts.len());
+    }
+    ranges
+}

@@ -1,0 +1,177 @@
+//! `local`: each ghost at the pixels that it reaches, and nowhere else.
+//!
+//! A ghost is left out wherever its bell is below one level for all of them, which is chosen by what is left out at any one
+//! place: `map` adds that up, and what floats cost, over the ghosts that meet there.
+
+mod area;
+mod map;
+mod slopes;
+
+use std::sync::Arc;
+
+use super::candidate::Survey;
+use super::weigh::Weighed;
+use super::{Cost, Evaluator, Group, Layer, Plan, Precision, Prediction, Request, Transform, cost, share};
+use crate::frame::Frame;
+use crate::problem::Problem;
+use crate::scene::Ghost;
+use crate::{Error, Result};
+
+pub(crate) use area::{Area, LARGEST_POINT};
+use map::{Map, Worst};
+
+/// Ghosts that are summed at the pixels that they reach.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Local {
+    /// The ghosts, in groups of [`Transform::Direct`].
+    pub groups: Vec<Group>,
+    /// What a bell may be where it is left out, in units of the field's scale.
+    pub level: f64,
+    /// The floats that they are summed in.
+    pub precision: Precision,
+    /// Pixels of the window that each of them reaches, all added up.
+    pub reached: f64,
+}
+
+/// The part of the tolerance that is kept for what is left out: it costs a reach that grows with the root of a logarithm.
+const NEEDED: f64 = 0.1;
+
+/// The most of the tolerance that rounding may take in 32-bit floats: with less left than the rest the reach grows, and 64-bit
+/// floats cost some times as much.
+const SINGLE: f64 = 0.8;
+
+/// Half a unit of the canvas, which is one of f32 whatever the floats are.
+const CANVAS: f64 = 0.5 * f32::EPSILON as f64;
+
+/// How near to its budget what is left out should come, and how often that is tried.
+const CLOSE: f64 = 0.4;
+const TRIES: usize = 6;
+const MOST_TRIES: usize = 40;
+
+/// Ghosts that are looked at for an estimate.
+const SAMPLE: usize = 512;
+
+/// What planning takes for each ghost, about, in nanoseconds.
+const PLANNING: f64 = 500.0;
+
+impl Local {
+    /// The pixels at which a ghost of a weight is computed.
+    pub(crate) fn area(&self, ghost: &Ghost, weight: f64, frame: Frame) -> Area {
+        Area::new(ghost, self.level / weight, frame)
+    }
+}
+
+/// A local layer, and what it is off by at most.
+pub(super) struct Bounded {
+    pub local: Local,
+    /// What is left out.
+    pub cut: f64,
+    /// What its floats cost.
+    pub rounding: f64,
+}
+
+/// A local layer of groups, which stays within a part of the tolerance.
+///
+/// # Errors
+/// [`Error::ToleranceBelowFloor`] where floats cannot be as exact.
+pub(super) fn layer(problem: &Problem, weighed: &Weighed, groups: &[Group], part: f64) -> Result<Bounded> {
+    let map = Map::new(problem, weighed, groups);
+    let mut level = 0.7 * part / crowding(problem, weighed, part);
+    let mut worst = map.worst(level);
+    let single = worst.rounding(Precision::Single) <= SINGLE * part;
+    let mut precision = if single { Precision::Single } else { Precision::Double };
+    // The highest level found that stays within the budget.
+    let mut found: Option<(f64, Worst)> = None;
+    for attempt in 0..MOST_TRIES {
+        // What floats cost grows a little with the reach.
+        if precision == Precision::Single && worst.single > (1.0 - NEEDED) * part {
+            (precision, found) = (Precision::Double, None);
+        }
+        let rounding = worst.rounding(precision);
+        if rounding > (1.0 - NEEDED) * part {
+            return Err(Error::ToleranceBelowFloor { asked: part, floor: rounding / (1.0 - NEEDED) });
+        }
+        let budget = 0.98 * (part - rounding);
+        if worst.cut <= budget {
+            found = found.filter(|(highest, _)| *highest > level).or(Some((level, worst)));
+        }
+        let close = worst.cut <= budget && (worst.cut >= CLOSE * budget || worst.cut == 0.0 || level >= budget);
+        if close || found.is_some() && (attempt >= TRIES || worst.cut > budget) {
+            break;
+        }
+        // However many meet at a place, each leaves out no more than the level.
+        let factor = if attempt < TRIES { 0.75 * budget / worst.cut } else { 0.1 };
+        level = (level * factor).min(budget);
+        worst = map.worst(level);
+    }
+    let Some((level, worst)) = found else {
+        return Err(Error::Plan("local would leave out too much at any reach".into()));
+    };
+    let rounding = worst.rounding(precision);
+    let groups = groups.iter().map(|group| Group { transform: Transform::Direct, ..group.clone() }).collect();
+    let local = Local { groups, level, precision, reached: worst.reached };
+    Ok(Bounded { local, cut: worst.cut, rounding })
+}
+
+/// The plan by `local`.
+///
+/// # Errors
+/// [`Error::ToleranceBelowFloor`] where floats cannot be as exact.
+pub(super) fn candidate(problem: &Arc<Problem>, survey: &Survey, request: &Request) -> Result<Plan> {
+    let weighed = &survey.weighed;
+    let left = request.tolerance - weighed.dropped_error;
+    let Bounded { local, cut, rounding } =
+        layer(problem, weighed, &survey.groups, left).map_err(|error| match error {
+            Error::ToleranceBelowFloor { floor, .. } => {
+                Error::ToleranceBelowFloor { asked: request.tolerance, floor: floor / (1.0 - share::DROPPED) }
+            }
+            error => error,
+        })?;
+    let storage = CANVAS.min(rounding);
+    let dropped = weighed.dropped_error;
+    let predicted = Prediction { dropped, cut, rounding: rounding - storage, storage, ..Prediction::default() };
+    let precision = local.precision;
+    // The lists of 64-bit ghosts, eight of them a round.
+    if precision == Precision::Double && (problem.ghosts().len() - weighed.dropped) / 8 > request.loop_rounds {
+        return Err(Error::Plan("local would need more rounds of a loop than this renderer runs".into()));
+    }
+    let layers = vec![Layer::Local(local)];
+    Ok(Plan {
+        tolerance: request.tolerance,
+        precision,
+        scale: weighed.scale,
+        peaks: weighed.peaks.clone(),
+        dropped: weighed.dropped,
+        predicted,
+        costs: vec![cost::estimate(&layers, precision, problem.frame(), &request.cost_model)],
+        ..Plan::by_hand(problem.clone(), layers)
+    })
+}
+
+/// About how many times the level is left out at the worst place, for a start.
+fn crowding(problem: &Problem, weighed: &Weighed, level: f64) -> f64 {
+    3.0 + 1.5 * reached(problem, weighed, level) / problem.frame().window.pixels() as f64
+}
+
+/// What `local` costs at least, by a few of the ghosts, and what it costs to plan it, in nanoseconds.
+pub(super) fn estimate(problem: &Problem, survey: &Survey, request: &Request) -> (Cost, f64) {
+    let (kept, frame) = (problem.ghosts().len() - survey.weighed.dropped, problem.frame());
+    let reached = reached(problem, &survey.weighed, request.tolerance);
+    let nanoseconds = cost::local(kept, reached, Precision::Single, frame, &request.cost_model);
+    let cost = Cost { evaluator: Evaluator::Local, summed: 0, milliseconds: 1e-6 * nanoseconds };
+    (cost, PLANNING * kept as f64)
+}
+
+/// Pixels that the ghosts reach where they are left out below a level, by a few of them.
+fn reached(problem: &Problem, weighed: &Weighed, level: f64) -> f64 {
+    let (weights, frame) = (&weighed.weights, problem.frame());
+    let step = weights.len().div_ceil(SAMPLE).max(1);
+    let (mut reached, mut seen) = (0.0, 0.0);
+    for (ghost, &weight) in problem.ghosts().iter().zip(weights).step_by(step) {
+        if weight > 0.0 {
+            reached += Area::new(ghost, level / weight, frame).pixels(frame);
+        }
+        seen += 1.0;
+    }
+    reached / f64::max(seen, 1.0) * weights.len() as f64
+}

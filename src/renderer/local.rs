@@ -1,0 +1,166 @@
+//! The ghosts of a local layer, as its pass takes them.
+
+use glam::{DVec2, IVec2};
+use rayon::prelude::*;
+
+use super::convert::{double_ghost, weight};
+use crate::Result;
+use crate::frame::Frame;
+use crate::gpu::layout::{DoubleGhost, LOCAL_BLOCK, LocalGhost};
+use crate::gpu::local::{Drawn, Listed, LocalPass};
+use crate::gpu::runner::Runner;
+use crate::plan::{self, Area, Local, Plan, Precision};
+use crate::scene::Ghost;
+use crate::series::Bell;
+
+/// Lists are multiples of this: what a shader goes through in one round.
+const STEP: usize = crate::gpu::evaluators::STEP;
+
+const _: () = assert!(plan::LARGEST_POINT as i32 == crate::gpu::layout::LARGEST_POINT);
+
+/// A ghost with what is known of it.
+struct Placed<'a> {
+    ghost: &'a Ghost,
+    weight: [f64; 3],
+    area: Area,
+    /// Where its bell's parameters begin, and its kind where there are several.
+    bell: u32,
+}
+
+/// Uploads the ghosts of a plan's local layer for a frame.
+///
+/// # Errors
+/// [`crate::Error::Gl`] where the driver refuses.
+pub(super) fn upload(plan: &Plan, local: &Local, frame: Frame, pass: &mut LocalPass, runner: &Runner) -> Result<()> {
+    let as_drawn = local.precision == Precision::Single && pass.can_draw();
+    let shapes = Shapes::of(plan, local, as_drawn);
+    let mut placed = Vec::new();
+    for (group, &begin) in local.groups.iter().zip(&shapes.begins) {
+        let kind = if shapes.several { group.bell.kind() << 24 } else { 0 };
+        let one = |(place, &index): (usize, &u32)| {
+            let ghost = &plan.problem().ghosts()[index as usize];
+            let weight = weight(ghost, plan);
+            let largest = weight.iter().fold(0.0f64, |largest, weight| largest.max(weight.abs()));
+            let bell = (begin + if shapes.each(&group.bell) { place as u32 } else { 0 }) | kind;
+            Placed { ghost, weight, area: local.area(ghost, largest, frame), bell }
+        };
+        let members = group.members.par_iter().enumerate().map(one);
+        placed.par_extend(members.filter(|placed| placed.area.first != placed.area.last));
+    }
+    if as_drawn {
+        let (points, quads): (Vec<_>, Vec<_>) = placed.iter().partition(|placed| placed.area.point);
+        let ghosts: Vec<_> = points.par_iter().chain(&quads).map(|placed| drawn(placed, frame)).collect();
+        let single: Vec<[f32; 4]> = shapes.rows.iter().map(|row| row.map(|x| x as f32)).collect();
+        return pass.set_drawn(&Drawn { ghosts: &ghosts, points: points.len() }, &single);
+    }
+    let (lists, blocks) = lists(&placed, frame);
+    let mut ghosts: Vec<_> =
+        placed.par_iter().map(|placed| double_ghost(placed.ghost, placed.weight, placed.bell)).collect();
+    ghosts.push(DoubleGhost::NONE);
+    pass.set_listed(runner, &Listed { ghosts: &ghosts, lists: &lists, blocks }, &shapes.rows)
+}
+
+/// The parameters of the bells of a layer.
+struct Shapes {
+    several: bool,
+    /// Where those of each group begin.
+    begins: Vec<u32>,
+    /// Where they are drawn, for offsets in sizes: then a periodic bell has a row for each ghost.
+    rows: Vec<[f64; 4]>,
+    drawn: bool,
+}
+
+impl Shapes {
+    fn of(plan: &Plan, local: &Local, drawn: bool) -> Self {
+        let first = local.groups.first().map_or(0, |group| group.bell.kind());
+        let several = local.groups.iter().any(|group| group.bell.kind() != first);
+        let mut shapes = Self { several, begins: Vec::new(), rows: Vec::new(), drawn };
+        let mut begins: Vec<(&Bell, u32)> = Vec::new();
+        for group in &local.groups {
+            let parameters = group.bell.shape().parameters();
+            if shapes.each(&group.bell) {
+                shapes.begins.push(shapes.rows.len() as u32);
+                let rows = group.members.iter().flat_map(|&index| {
+                    let size = plan.problem().ghosts()[index as usize].size;
+                    parameters.iter().map(move |&[x, y, z, w]| [x * size.x, y * size.y, z, w])
+                });
+                shapes.rows.extend(rows);
+                continue;
+            }
+            let rows = &mut shapes.rows;
+            let begin = begins.iter().find(|(bell, _)| *bell == &group.bell).map(|&(_, begin)| begin);
+            shapes.begins.push(begin.unwrap_or_else(|| {
+                let begin = rows.len() as u32;
+                rows.extend(parameters);
+                begins.push((&group.bell, begin));
+                begin
+            }));
+        }
+        shapes
+    }
+
+    /// Whether each ghost has parameters of its own.
+    fn each(&self, bell: &Bell) -> bool {
+        self.drawn && bell.shape().period().is_some()
+    }
+}
+
+/// A ghost as it is drawn. Its offsets are counted from the pixel of the window that is nearest to its centre.
+fn drawn(placed: &Placed<'_>, frame: Frame) -> LocalGhost {
+    // Beyond this a bell is nothing, and its square is still a number.
+    const FARTHEST: f64 = 1e18;
+    let (Placed { ghost, weight, area, bell }, window) = (placed, frame.window);
+    let low = IVec2::new(window.x, window.y);
+    let high = low + IVec2::new(window.width as i32 - 1, window.height as i32 - 1);
+    let center = frame.pixel(ghost.center);
+    let anchor = center.round().clamp(low.as_dvec2(), high.as_dvec2());
+    let step = (frame.pixel_sides() / ghost.size).min(DVec2::splat(FARTHEST));
+    let away =
+        ((anchor - center) * frame.pixel_sides() / ghost.size).clamp(DVec2::splat(-FARTHEST), DVec2::splat(FARTHEST));
+    LocalGhost {
+        area: [area.first[0], area.first[1], area.last[0], area.last[1]],
+        anchor: anchor.as_ivec2().to_array(),
+        // Rows are counted downwards.
+        offset: [away.x as f32, -away.y as f32],
+        step: [step.x as f32, -step.y as f32],
+        weight: weight.map(|weight| weight as f32),
+        bell: *bell,
+    }
+}
+
+/// For each block of the window where its list begins, and where the last one ends; then the lists, filled up with the ghost
+/// that is none. And how many columns and rows of blocks there are.
+fn lists(placed: &[Placed<'_>], frame: Frame) -> (Vec<u32>, [u32; 2]) {
+    let window = frame.window;
+    let blocks = [window.width, window.height].map(|side| side.div_ceil(LOCAL_BLOCK));
+    let count = (blocks[0] * blocks[1]) as usize;
+    let of = |area: &Area| {
+        let span = |axis: usize, origin: i32| {
+            let side = [window.width, window.height][axis] as i32;
+            let [first, last] =
+                [area.first[axis], area.last[axis] - 1].map(|place| (place - origin).clamp(0, side - 1) as u32);
+            first / LOCAL_BLOCK..=last / LOCAL_BLOCK
+        };
+        let (columns, rows) = (span(0, window.x), span(1, window.y));
+        rows.flat_map(move |row| columns.clone().map(move |column| (row * blocks[0] + column) as usize))
+    };
+    let mut lengths = vec![0usize; count];
+    placed.iter().for_each(|placed| of(&placed.area).for_each(|block| lengths[block] += 1));
+    let mut starts = Vec::with_capacity(count + 1);
+    let mut end = count + 1;
+    for length in &lengths {
+        starts.push(end as u32);
+        end += length.next_multiple_of(STEP);
+    }
+    starts.push(end as u32);
+    let mut lists = vec![placed.len() as u32; end];
+    let mut next: Vec<usize> = starts.iter().map(|&start| start as usize).collect();
+    lists[..=count].copy_from_slice(&starts);
+    for (index, placed) in placed.iter().enumerate() {
+        for block in of(&placed.area) {
+            lists[next[block]] = index as u32;
+            next[block] += 1;
+        }
+    }
+    (lists, blocks)
+}
