@@ -21,11 +21,22 @@ pub(super) struct Survey {
     pub groups: Vec<Group>,
     pub reaches: Vec<Reach>,
     /// Groups that are no part of the series, and what floats of the precision cost their sum.
-    pub summed: Vec<Group>,
-    pub summed_in: (Precision, f64),
+    pub beside: Beside,
     /// What planning may cost, and whether that of the bells is in it.
     pub effort: Effort,
     pub prepared: Cell<bool>,
+}
+
+/// Layers that stand beside the series, and what they are off by at most.
+#[derive(Clone, Default)]
+pub(super) struct Beside {
+    pub layers: Vec<Layer>,
+    /// The floats in which ghosts are summed at every pixel.
+    pub precision: Precision,
+    /// What floats cost.
+    pub rounding: f64,
+    /// What is left out where bells are summed where they reach.
+    pub cut: f64,
 }
 
 impl Survey {
@@ -37,8 +48,7 @@ impl Survey {
             weighed,
             groups,
             reaches,
-            summed: Vec::new(),
-            summed_in: Default::default(),
+            beside: Beside::default(),
             effort: Effort::unlimited(),
             prepared: Cell::new(false),
         }
@@ -92,12 +102,12 @@ pub(super) fn candidate(
     // What rounding costs depends on the degree, and the degree on what rounding leaves of the tolerance.
     let mut degree = request.degree.map_or(rounding::SEEN_DEGREE, |[n, m]| n.max(m));
     loop {
-        let (precision, summed) = survey.summed_in;
-        let mut rounding = rounding::bound(&survey.weighed, evaluator, degree) + summed;
-        if rounding > (1.0 - NEEDED) * request.tolerance
+        let Beside { precision, rounding: beside, cut, .. } = survey.beside;
+        let mut rounding = rounding::bound(&survey.weighed, evaluator, degree) + beside;
+        if rounding + cut > (1.0 - NEEDED) * request.tolerance
             && let Some(wide) = wide
         {
-            rounding = rounding.min(wide.rounding(evaluator) + summed);
+            rounding = rounding.min(wide.rounding(evaluator) + beside);
         }
         let plan = with_rounding(problem, (precision, rounding), survey, wide, request, evaluator)?;
         let needed = plan.degree()[0].max(plan.degree()[1]);
@@ -120,15 +130,21 @@ fn with_rounding(
     let weighed = &survey.weighed;
     // With the whole of the series given, there is nothing left to plan: the error is predicted as it comes.
     let given = request.period.is_some() && request.degree.is_some();
-    let usable = request.tolerance - rounding;
+    let cut = survey.beside.cut;
+    let usable = request.tolerance - rounding - cut;
     // A direct sum leaves out nothing but ghosts; a series needs room for its own bounds.
     let needed = if evaluator == Evaluator::Direct { share::DROPPED } else { NEEDED };
     if usable < needed * request.tolerance && !given {
-        return Err(Error::ToleranceBelowFloor { asked: request.tolerance, floor: rounding / (1.0 - needed) });
+        return Err(Error::ToleranceBelowFloor { asked: request.tolerance, floor: (rounding + cut) / (1.0 - needed) });
     }
     let storage = rounding::stored(weighed, evaluator).min(rounding);
-    let mut predicted =
-        Prediction { dropped: weighed.dropped_error, rounding: rounding - storage, storage, ..Prediction::default() };
+    let mut predicted = Prediction {
+        dropped: weighed.dropped_error,
+        cut,
+        rounding: rounding - storage,
+        storage,
+        ..Prediction::default()
+    };
     let mut layers = Vec::new();
     if evaluator == Evaluator::Direct {
         layers.push(Layer::direct(survey.groups.iter().cloned()));
@@ -137,9 +153,7 @@ fn with_rounding(
             series::plan_series(evaluator, survey, wide, problem.frame(), request, predicted, usable)?;
         predicted = with_series;
         layers.push(Layer::Series(series));
-        if !survey.summed.is_empty() {
-            layers.push(Layer::direct(survey.summed.iter().cloned()));
-        }
+        layers.extend(survey.beside.layers.iter().cloned());
     }
     let plan = Plan {
         tolerance: request.tolerance,

@@ -215,12 +215,29 @@ pub(super) fn direct<'a>(
     frame: Frame,
     model: &CostModel,
 ) -> f64 {
-    let (mut ghosts, mut bells) = (0, 0.0);
-    for group in groups {
-        ghosts += group.ghosts;
-        bells += group.ghosts as f64 * in_gaussians(&group.bell, precision);
+    let mut summed = Summed::default();
+    groups.into_iter().for_each(|group| summed.add(group, precision));
+    summed.nanoseconds(frame, model)
+}
+
+/// Ghosts that are summed at every pixel.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Summed {
+    ghosts: usize,
+    /// In Gaussians of 32-bit floats.
+    bells: f64,
+}
+
+impl Summed {
+    pub fn add(&mut self, group: &Group, precision: Precision) {
+        self.ghosts += group.ghosts;
+        self.bells += group.ghosts as f64 * in_gaussians(&group.bell, precision);
     }
-    frame.window.pixels() as f64 * (bells * slower(ghosts) + AROUND_BELLS) * model.bell
+
+    /// What they cost.
+    pub fn nanoseconds(&self, frame: Frame, model: &CostModel) -> f64 {
+        frame.window.pixels() as f64 * (self.bells * slower(self.ghosts) + AROUND_BELLS) * model.bell
+    }
 }
 
 /// How many times as long as a Gaussian in 32-bit floats a bell takes at a pixel: on llvmpipe, 28 and 280 of them.

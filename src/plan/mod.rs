@@ -55,6 +55,7 @@ pub(crate) use weigh::weight;
 
 use candidate::{Survey, candidate};
 use series::Wide;
+use split::Apart;
 
 /// Highest harmonic that a plan may use along one axis.
 pub const HIGHEST_DEGREE: u32 = 4096;
@@ -160,12 +161,18 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
         // That it cannot be cheaper is all there is to know.
         found.others.push(least_local);
     }
-    if let Some(survey) = split::apart(problem, &survey, request) {
-        found.bound(&survey);
-        let wide = Wide::new(problem, &survey, request);
-        let split = others.iter().map(|&evaluator| candidate(problem, &survey, wide.as_ref(), request, evaluator));
-        // One that cannot be had was never asked for by that name.
-        found.plans.extend(split.filter_map(Result::ok));
+    match split::apart(problem, &survey, request) {
+        Some(Apart::Series(survey)) => {
+            found.bound(&survey);
+            let wide = Wide::new(problem, &survey, request);
+            let split = others.iter().map(|&evaluator| candidate(problem, &survey, wide.as_ref(), request, evaluator));
+            // One that cannot be had was never asked for by that name.
+            found.plans.extend(split.filter_map(Result::ok));
+        }
+        Some(Apart::Sums(plan)) => {
+            found.plans.extend(Some(*plan).filter(|plan| plan.predicted.total() <= request.tolerance))
+        }
+        None => {}
     }
     Ok(found.cheapest())
 }

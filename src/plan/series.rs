@@ -216,7 +216,7 @@ impl Brief<'_> {
             // What was planned with may have been a bound by weights.
             let degree = [counts.len() as u32 - 1, counts[0] - 1];
             let known = rounding::of_modes(self.evaluator, &strength, degree) + rounding::of_doubles(&groups, degree);
-            predicted = predicted.with_single((known + self.survey.summed_in.1).min(predicted.single()));
+            predicted = predicted.with_single((known + self.survey.beside.rounding).min(predicted.single()));
         }
         let Request { tolerance, ref cost_model, .. } = *self.request;
         predicted.gathering = gather::choose(&mut groups, self.period, tolerance, &predicted, cost_model);

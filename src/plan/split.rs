@@ -1,50 +1,114 @@
-//! Which ghosts a direct sum takes beside the series: a few small ones can ask for more terms than all the others.
+//! Which ghosts are no part of the series: small and sharp ones ask for more terms than all the others, and reach few pixels.
+//!
+//! Groups are put in the order of the terms that they need; the union of all terms only shrinks with the neediest. A cut through
+//! that order has on one side what is summed, each group where it reaches or at every pixel, whichever is cheaper; and on the
+//! other what is a series, or summed at every pixel as well where that is cheaper still. Where to cut is decided by bounds by
+//! weights, which are cheap; what comes of it is planned like any other candidate.
+
+use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::candidate::Survey;
+use super::candidate::{Beside, Survey};
 use super::decay::Decay;
 use super::weigh::Weighed;
-use super::{CostModel, Evaluator, Group, Precision, Request, Transform, cost, direct, gather, period, share};
+use super::{
+    CostModel, Evaluator, Group, Layer, Plan, Precision, Prediction, Request, Transform, cost, direct, gather, local,
+    period, share,
+};
 use crate::frame::Frame;
 use crate::problem::Problem;
 
-/// Ghosts that may be summed beside a series, at most.
-const FEW: usize = 512;
-
-/// What of the tolerance their rounding may take before they are summed in 64-bit floats.
+/// What of the tolerance the rounding of ghosts that are summed at every pixel may take before that is in 64-bit floats.
 const SUMMED: f64 = 0.1;
 
-/// The others should cost less than this part of all of them, by the estimate, to be planned for.
+/// What a local layer may take of the tolerance: its cost grows with the logarithm of one over it, as that of a series does.
+const LOCAL: f64 = 0.3;
+/// And where there is no series, of what the rest leaves.
+const LOCAL_ALONE: f64 = 0.98;
+/// The level below which it leaves a bell out is about one in so many of that.
+const CROWDING: f64 = 4.0;
+
+/// Layers should cost less than this part of what any single evaluator does, by the estimate, to be planned.
 const WORTH_IT: f64 = 0.9;
 
 /// Nodes a half wave that a lattice is taken to have before it is planned.
 const NODES: f64 = 1.6;
 
-/// What is left for a series, and what is not, where that is likely to be cheaper than either a series or a direct sum of
-/// all ghosts.
-///
-/// Groups go over in the order of the terms that they need: the union of all terms only shrinks with the neediest. How
-/// many do is decided by bounds by weights, which are cheap; what comes of it is planned like any other candidate.
-pub(super) fn apart(problem: &Problem, survey: &Survey, request: &Request) -> Option<Survey> {
+/// What is to be planned of the ghosts.
+pub(super) enum Apart {
+    /// A series of what is left, beside the layers that the survey has.
+    Series(Box<Survey>),
+    /// The whole plan, a sum without a series.
+    Sums(Box<Plan>),
+}
+
+/// Layers that are likely to be cheaper than any single evaluator; none where there are no such.
+pub(super) fn apart(problem: &Arc<Problem>, survey: &Survey, request: &Request) -> Option<Apart> {
     // Everything is to be a series, or in one period.
     if request.evaluator.is_some() || request.degree.is_some() || request.period.is_some() {
         return None;
     }
-    let summed = neediest(survey, problem.frame(), request)?;
-    let (mut left, mut moved) = (Vec::new(), Vec::new());
-    for (index, group) in survey.groups.iter().enumerate() {
-        if summed.contains(&index) { &mut moved } else { &mut left }.push(Group {
-            transform: if summed.contains(&index) { Transform::Direct } else { group.transform },
-            ..group.clone()
-        });
+    let Cut { mut ways, series } = Cutting::new(problem, survey, request)?.cheapest()?;
+    if !series {
+        ways.iter_mut().filter(|way| **way == Way::Series).for_each(|way| *way = Way::Everywhere);
+    }
+    let of = |wanted: Way| -> Vec<Group> {
+        let mine = survey.groups.iter().zip(&ways).filter(|(_, way)| **way == wanted).map(|(group, _)| group);
+        mine.map(|group| match wanted {
+            Way::Series => group.clone(),
+            _ => Group { transform: Transform::Direct, ..group.clone() },
+        })
+        .collect()
+    };
+    let [left, everywhere, reaching] = [Way::Series, Way::Everywhere, Way::Reaching].map(of);
+    let everywhere_weighed = only(&survey.weighed, &everywhere);
+    let bounds = direct::bounds(problem, &everywhere_weighed);
+    let (precision, rounding) = bounds.within(SUMMED * request.tolerance);
+    let mut beside = Beside { precision, ..Beside::default() };
+    if !everywhere.is_empty() {
+        beside.layers.push(Layer::direct(everywhere));
+        beside.rounding += rounding;
+    }
+    if !reaching.is_empty() {
+        let left_over = request.tolerance - survey.weighed.dropped_error - beside.rounding;
+        let part = if series { LOCAL * request.tolerance } else { LOCAL_ALONE * left_over };
+        let weighed = only(&survey.weighed, &reaching);
+        let bounded = local::layer(problem, &weighed, &reaching, part).ok()?;
+        beside.layers.push(Layer::Local(bounded.local));
+        (beside.rounding, beside.cut) = (beside.rounding + bounded.rounding, bounded.cut);
+    }
+    if !series {
+        return Some(Apart::Sums(Box::new(sums(problem, survey, beside, request))));
     }
     let weighed = only(&survey.weighed, &left);
-    let bounds = direct::bounds(problem, &only(&survey.weighed, &moved));
     let reaches = period::reaches(problem, &weighed);
     let (effort, prepared) = (survey.effort.clone(), survey.prepared.clone());
-    let summed_in = bounds.within(SUMMED * request.tolerance);
-    Some(Survey { weighed, groups: left, reaches, summed: moved, summed_in, effort, prepared })
+    Some(Apart::Series(Box::new(Survey { weighed, groups: left, reaches, beside, effort, prepared })))
+}
+
+/// The plan of layers without a series.
+fn sums(problem: &Arc<Problem>, survey: &Survey, beside: Beside, request: &Request) -> Plan {
+    let Beside { layers, precision, rounding, cut } = beside;
+    let weighed = &survey.weighed;
+    let storage = (0.5 * f64::from(f32::EPSILON) * layers.len() as f64).min(rounding);
+    let predicted = Prediction {
+        dropped: weighed.dropped_error,
+        cut,
+        rounding: rounding - storage,
+        storage,
+        ..Prediction::default()
+    };
+    Plan {
+        tolerance: request.tolerance,
+        precision,
+        scale: weighed.scale,
+        peaks: weighed.peaks.clone(),
+        dropped: weighed.dropped,
+        predicted,
+        costs: vec![cost::estimate(&layers, precision, problem.frame(), &request.cost_model)],
+        ..Plan::by_hand(problem.clone(), layers)
+    }
 }
 
 /// The weights of these groups' ghosts alone.
@@ -56,57 +120,147 @@ fn only(weighed: &Weighed, groups: &[Group]) -> Weighed {
     Weighed { weight: weights.iter().sum(), weights, ..weighed.clone() }
 }
 
-/// The groups to be summed directly, by their indices; none where a series of all, or a sum of all, is estimated to be about
-/// as cheap.
-fn neediest(survey: &Survey, frame: Frame, request: &Request) -> Option<Vec<usize>> {
-    let (groups, model) = (&survey.groups, &request.cost_model);
-    let small = |group: &&Group| group.ghosts <= FEW;
-    if groups.len() < 2 || !groups.iter().any(|group| small(&group)) {
-        return None;
+/// How a group is computed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Way {
+    Series,
+    /// Summed at every pixel.
+    Everywhere,
+    /// Summed where it reaches.
+    Reaching,
+}
+
+/// A cut: the way of each group, and whether what is left is a series or summed at every pixel.
+struct Cut {
+    ways: Vec<Way>,
+    series: bool,
+}
+
+/// What is known of the groups before they are cut.
+struct Cutting<'a> {
+    groups: &'a [Group],
+    frame: Frame,
+    model: &'a CostModel,
+    period: DVec2,
+    /// The modes that each of them needs; none where no series can have it.
+    needs: Vec<Option<Vec<u32>>>,
+    /// What each of them costs where it reaches, in nanoseconds.
+    reaching: Vec<f64>,
+}
+
+impl<'a> Cutting<'a> {
+    /// None where looking at the groups costs too much.
+    fn new(problem: &Problem, survey: &'a Survey, request: &'a Request) -> Option<Self> {
+        let (groups, model) = (&survey.groups[..], &request.cost_model);
+        if groups.len() < 2 {
+            return None;
+        }
+        let period = period::shortest(&survey.reaches, request.tolerance * share::PERIODISATION);
+        let part = request.tolerance * share::TRUNCATION / groups.len() as f64;
+        survey.prepare().ok()?;
+        let mut needs = Vec::with_capacity(groups.len());
+        for group in groups {
+            let decay = Decay::new(group, period);
+            let kept = decay.kept(part / group.weight).ok();
+            survey
+                .effort
+                .spend(decay.work(kept.as_ref().map_or(0, |counts| counts.len() + counts[0] as usize)))
+                .ok()?;
+            needs.push(kept);
+        }
+        let level = LOCAL * request.tolerance / CROWDING;
+        let reaching = groups.iter().map(|group| {
+            let reached = local::reached_by(problem, &survey.weighed, group, level);
+            group.ghosts as f64 * model.quad + reached * model.splat
+        });
+        let reaching = reaching.collect();
+        Some(Self { groups, frame: problem.frame(), model, period, needs, reaching })
     }
-    let period = period::shortest(&survey.reaches, request.tolerance * share::PERIODISATION);
-    let part = request.tolerance * share::TRUNCATION / groups.len() as f64;
-    // What no series can have is infinitely needy.
-    let mut needs: Vec<Option<Vec<u32>>> = Vec::with_capacity(groups.len());
-    survey.prepare().ok()?;
-    for group in groups {
-        let decay = Decay::new(group, period);
-        let kept = decay.kept(part / group.weight).ok();
-        survey.effort.spend(decay.work(kept.as_ref().map_or(0, |counts| counts.len() + counts[0] as usize))).ok()?;
-        needs.push(kept);
-    }
-    let terms =
-        |index: usize| needs[index].as_ref().map_or(u64::MAX, |counts| counts.iter().map(|&c| u64::from(c)).sum());
-    let mut order: Vec<usize> = (0..groups.len()).collect();
-    order.sort_by_key(|&index| std::cmp::Reverse(terms(index)));
-    let estimate = |moved: usize| -> Option<f64> {
-        let (summed, left) = order.split_at(moved);
-        let summed = cost::direct(summed.iter().map(|&index| &groups[index]), Precision::Single, frame, model);
-        let mut counts = vec![1u32];
-        for &index in left {
-            let needed = needs[index].as_ref()?;
-            counts.resize(counts.len().max(needed.len()), 1);
-            for (count, &needed) in counts.iter_mut().zip(needed) {
-                *count = needed.max(*count);
+
+    /// The cheapest cut, where that is cheaper than any single evaluator.
+    fn cheapest(&self) -> Option<Cut> {
+        let mut order: Vec<usize> = (0..self.groups.len()).collect();
+        let terms = |index: usize| {
+            self.needs[index].as_ref().map_or(u64::MAX, |counts| counts.iter().map(|&c| u64::from(c)).sum())
+        };
+        order.sort_by_key(|&index| std::cmp::Reverse(terms(index)));
+        let (series, rest) = (self.series(&order), self.rest(&order));
+        let all_reaching = self.reaching.iter().sum::<f64>() + self.canvas();
+        let whole = series[0].min(rest[0]).min(all_reaching);
+        let mut summed = Summed::default();
+        let (mut least, mut best) = (WORTH_IT * whole, None);
+        for cut in 1..=order.len() {
+            self.add(&mut summed, order[cut - 1]);
+            let (series, rest) = (series[cut], rest[cut]);
+            let cost = self.cost(&summed) + series.min(rest);
+            if cost < least {
+                (least, best) = (cost, Some((cut, series <= rest && cut < order.len())));
             }
         }
-        let series = left.iter().map(|&index| {
-            let needed = needs[index].as_ref().map_or([0; 2], |counts| [counts.len() as u32 - 1, counts[0] - 1]);
-            gather::cost(&Group { degree: needed, ..groups[index].clone() }, &Transform::Dispatch, model)
-        });
-        Some(series.sum::<f64>() + cheapest_field(&counts, period, frame, model) + summed)
-    };
-    let most = order.iter().scan(0, |sum, &index| {
-        *sum += groups[index].ghosts;
-        (*sum <= FEW).then_some(())
-    });
-    // The last group stays: all of them are `direct` itself.
-    let most = most.count().min(groups.len() - 1);
-    let direct = cost::direct(groups, Precision::Single, frame, model);
-    let whole = estimate(0).map_or(direct, |series| series.min(direct));
-    let costs = (1..=most).filter_map(|moved| Some((estimate(moved)?, moved)));
-    let (least, moved) = costs.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    (least < WORTH_IT * whole).then(|| order[..moved].to_vec())
+        let (cut, series) = best?;
+        let mut ways = vec![Way::Series; order.len()];
+        order[..cut].iter().for_each(|&index| ways[index] = self.way(index));
+        Some(Cut { ways, series })
+    }
+
+    /// What all that is left after each cut costs at every pixel, in nanoseconds.
+    fn rest(&self, order: &[usize]) -> Vec<f64> {
+        let mut costs = vec![0.0; order.len() + 1];
+        let mut summed = cost::Summed::default();
+        for (cut, &index) in order.iter().enumerate().rev() {
+            summed.add(&self.groups[index], Precision::Single);
+            costs[cut] = summed.nanoseconds(self.frame, self.model);
+        }
+        costs
+    }
+
+    /// What a series of all that is left after each cut is estimated to cost, in nanoseconds; infinite where there is none.
+    fn series(&self, order: &[usize]) -> Vec<f64> {
+        let mut costs = vec![f64::INFINITY; order.len() + 1];
+        costs[order.len()] = 0.0;
+        let (mut union, mut spectrum) = (vec![1u32], 0.0);
+        for (cut, &index) in order.iter().enumerate().rev() {
+            let Some(needed) = &self.needs[index] else { break };
+            union.resize(union.len().max(needed.len()), 1);
+            union.iter_mut().zip(needed).for_each(|(count, &needed)| *count = needed.max(*count));
+            let degree = [needed.len() as u32 - 1, needed[0] - 1];
+            let group = Group { degree, members: Arc::default(), ..self.groups[index].clone() };
+            spectrum += gather::cost(&group, &Transform::Dispatch, self.model);
+            costs[cut] = spectrum + cheapest_field(&union, self.period, self.frame, self.model);
+        }
+        costs
+    }
+
+    /// Whether a group is cheaper where it reaches, or at every pixel.
+    fn way(&self, index: usize) -> Way {
+        let everywhere = cost::direct([&self.groups[index]], Precision::Single, self.frame, self.model);
+        if self.reaching[index] <= everywhere { Way::Reaching } else { Way::Everywhere }
+    }
+
+    /// What a local layer costs however few its ghosts are.
+    fn canvas(&self) -> f64 {
+        cost::local(0, 0.0, Precision::Single, self.frame, self.model)
+    }
+
+    fn add(&self, summed: &mut Summed, index: usize) {
+        match self.way(index) {
+            Way::Reaching => summed.reaching = Some(summed.reaching.unwrap_or(0.0) + self.reaching[index]),
+            _ => summed.everywhere.get_or_insert_default().add(&self.groups[index], Precision::Single),
+        }
+    }
+
+    fn cost(&self, summed: &Summed) -> f64 {
+        let reaching = summed.reaching.map_or(0.0, |reaching| reaching + self.canvas());
+        reaching + summed.everywhere.map_or(0.0, |everywhere| everywhere.nanoseconds(self.frame, self.model))
+    }
+}
+
+/// What was cut off, where there is any.
+#[derive(Default)]
+struct Summed {
+    /// What reaching costs, in nanoseconds.
+    reaching: Option<f64>,
+    everywhere: Option<cost::Summed>,
 }
 
 /// What the field of so many terms is estimated to cost by the evaluator that is best at it, in nanoseconds.

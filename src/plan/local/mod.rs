@@ -162,6 +162,18 @@ pub(super) fn estimate(problem: &Problem, survey: &Survey, request: &Request) ->
     (cost, PLANNING * kept as f64)
 }
 
+/// Pixels that a group reaches where it is left out below a level, by a few of its ghosts.
+pub(super) fn reached_by(problem: &Problem, weighed: &Weighed, group: &Group, level: f64) -> f64 {
+    const FEW: usize = 64;
+    let step = group.members.len().div_ceil(FEW).max(1);
+    let area = |&member: &u32| {
+        let (ghost, frame) = (&problem.ghosts()[member as usize], problem.frame());
+        Area::new(ghost, level / weighed.weights[member as usize], frame).pixels(frame)
+    };
+    let reached: f64 = group.members.iter().step_by(step).map(area).sum();
+    reached * group.members.len() as f64 / group.members.len().div_ceil(step) as f64
+}
+
 /// Pixels that the ghosts reach where they are left out below a level, by a few of them.
 fn reached(problem: &Problem, weighed: &Weighed, level: f64) -> f64 {
     let (weights, frame) = (&weighed.weights, problem.frame());
