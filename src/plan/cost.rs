@@ -1,6 +1,6 @@
 //! What an evaluator costs: a handful of constants, one for each kind of work.
 
-use super::{Evaluator, Layer, Precision, Series, gather};
+use super::{Evaluator, Layer, Precision, Series, block_shift, gather};
 use crate::frame::Frame;
 
 /// Nanoseconds that each kind of work takes on one machine; every one of them finite and above 0.
@@ -215,15 +215,13 @@ pub(super) fn local(ghosts: usize, reached: f64, precision: Precision, frame: Fr
         Precision::Single => ghosts as f64 * model.quad + reached * model.splat + canvas,
         // By lists of blocks, of which a ghost has some that it hardly reaches.
         Precision::Double => {
-            let side = (reached / ghosts.max(1) as f64).sqrt() + BLOCK;
+            let side = (reached / ghosts.max(1) as f64).sqrt();
+            let side = side + f64::from((1u32 << block_shift(side)) - 1);
             let listed = (ghosts as f64 * side * side).min(ghosts as f64 * frame.window.pixels() as f64);
             ghosts as f64 * model.quad + listed * model.bell * LISTED + canvas
         }
     }
 }
-
-/// Pixels along a side of those blocks, less one.
-const BLOCK: f64 = 15.0;
 
 /// How many times as long as by `direct` a bell takes in 64-bit floats where it comes from a list: 9 to 11 on llvmpipe.
 const LISTED: f64 = 10.0;
