@@ -21,14 +21,14 @@ layout(std140, binding = BINDING_PASS) uniform Pass {
     ivec2 size;   // of the picture
     ivec2 first;  // pixel of the window
     int columns;  // of blocks
-    int pad;
+    int shift;    // of a block's side, a power of two
     double aspect; // a pixel's width over its height
 };
 layout(location = 0) out vec4 value;
 
 void main() {
     ivec2 p = corner + ivec2(gl_FragCoord.xy);
-    ivec2 block = (p - first) / LOCAL_BLOCK;
+    ivec2 block = (p - first) >> shift;
     int index = block.y * columns + block.x;
     uint last = lists[index + 1];
     precise double x = aspect * double(2 * p.x + 1 - size.x) / double(size.y);

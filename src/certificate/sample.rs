@@ -7,7 +7,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use crate::frame::Frame;
-use crate::plan::Plan;
+use crate::plan::{self, Area, Plan};
 use crate::scene::Ghost;
 
 /// Pixels that a certificate looks at, at least and at most.
@@ -27,7 +27,8 @@ const ANGLES: usize = 96;
 const ALONG_BORDERS: i32 = 12;
 
 /// Where to look: the borders, where copies come in; where the field was found largest; centres, flanks and rims of the
-/// ghosts that are strongest, steepest, steepest far from the origin, or left out; and the rest spread evenly over the window.
+/// ghosts that are strongest, steepest, steepest far from the origin, or left out, and where `local` computes them no more;
+/// and the rest spread evenly over the window.
 pub(crate) fn sample_pixels(plan: &Plan) -> Vec<[i32; 2]> {
     let (ghosts, frame) = (plan.problem().ghosts(), plan.problem().frame());
     let count = ghosts.len().max(1);
@@ -39,6 +40,8 @@ pub(crate) fn sample_pixels(plan: &Plan) -> Vec<[i32; 2]> {
     let notable = notable(plan);
     // One pixel of each first: with many ghosts there may be no more.
     sample.all(notable.iter().map(|&k| sample.nearest(&ghosts[k])).collect::<Vec<_>>());
+    let ends = notable.iter().flat_map(|&k| beyond(&ghosts[k], plan)).filter(|&pixel| sample.holds(pixel));
+    sample.all(ends.take(special / 3).collect::<Vec<_>>());
     let each = special.saturating_sub(sample.pixels.len()) / notable.len().max(1);
     let rings: Vec<[i32; 2]> = notable.iter().flat_map(|&k| sample.rings(&ghosts[k], each)).collect();
     sample.all(rings);
@@ -49,6 +52,16 @@ pub(crate) fn sample_pixels(plan: &Plan) -> Vec<[i32; 2]> {
     sample.pixels.sort_unstable();
     sample.pixels.dedup();
     sample.pixels
+}
+
+/// The pixels next to those at which a local layer computes a ghost, level with its centre: there what it leaves out is most.
+fn beyond(ghost: &Ghost, plan: &Plan) -> Vec<[i32; 2]> {
+    let Some(local) = plan.local() else { return Vec::new() };
+    let weight = plan::weight(ghost, plan.scale).into_iter().fold(0.0f64, |largest, weight| largest.max(weight.abs()));
+    let frame = plan.problem().frame();
+    let Area { first, last, .. } = local.area(ghost, weight, frame);
+    let [x, y] = frame.pixel(ghost.center).round().as_ivec2().to_array();
+    vec![[first[0] - 1, y], [last[0], y], [x, first[1] - 1], [x, last[1]]]
 }
 
 /// The ghosts to look at closely, by their indices.
@@ -113,6 +126,12 @@ impl Sample {
     /// The last column and row, counted from the window's first.
     fn last(&self) -> [i32; 2] {
         [self.frame.window.width as i32 - 1, self.frame.window.height as i32 - 1]
+    }
+
+    /// Whether a pixel is in the window.
+    fn holds(&self, [i, j]: [i32; 2]) -> bool {
+        let ([right, bottom], window) = (self.last(), self.frame.window);
+        (window.x..=window.x + right).contains(&i) && (window.y..=window.y + bottom).contains(&j)
     }
 
     /// The corners, and pixels between them along the borders.

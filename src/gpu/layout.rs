@@ -64,9 +64,6 @@ pub(crate) const LAST_UNIT: u32 = CANVAS.1;
 /// Pixels along a side of the largest square that is drawn as a point.
 pub(crate) const LARGEST_POINT: i32 = 64;
 
-/// Pixels along a side of the blocks that have lists of ghosts.
-pub(crate) const LOCAL_BLOCK: u32 = 16;
-
 /// Every binding, for the head of every shader.
 pub(crate) const BINDINGS: [Binding; 30] = [
     PASS,
@@ -103,12 +100,11 @@ pub(crate) const BINDINGS: [Binding; 30] = [
 
 /// Numbers that passes and their shaders have to agree on, for the head of every shader: work groups, and what is done in
 /// one round of a loop.
-pub(crate) const NUMBERS: [Binding; 12] = [
+pub(crate) const NUMBERS: [Binding; 11] = [
     ("DIRECT_STEP", super::evaluators::STEP as u32),
     ("DIRECT_BATCH", super::evaluators::BATCH as u32),
     ("DIRECT_FEW_BYTES", super::evaluators::FEW_BYTES),
     ("DIRECT_RUNS", super::evaluators::RUNS as u32),
-    ("LOCAL_BLOCK", LOCAL_BLOCK),
     ("SPECTRUM_TILE", super::spectrum::TILE),
     ("SPECTRUM_MINE", super::spectrum::MINE),
     ("SPECTRUM_ROWS", super::spectrum::TILE / super::spectrum::MINE),

@@ -7,7 +7,7 @@ use glow::HasContext as _;
 
 use super::context::Device;
 use super::evaluators::{STEP, Words, within_rounds};
-use super::layout::{CANVAS, DoubleGhost, GHOSTS, LARGEST_POINT, LOCAL_BLOCK, LocalGhost, PARTIALS, PASS, SHAPES};
+use super::layout::{CANVAS, DoubleGhost, GHOSTS, LARGEST_POINT, LocalGhost, PARTIALS, PASS, SHAPES};
 use super::resource::{Attribute, Buffer, Scratch, Texel, Texture};
 use super::runner::Runner;
 use crate::frame::Frame;
@@ -42,13 +42,15 @@ pub(crate) struct Listed<'a> {
     pub ghosts: &'a [DoubleGhost],
     pub lists: &'a [u32],
     pub blocks: [u32; 2],
+    /// A block's side is this power of two.
+    pub shift: u32,
 }
 
 /// What is on the device of either.
 enum Scene {
     Nothing,
     Drawn { points: Vec<Range<usize>>, quads: Vec<Range<usize>> },
-    Listed { columns: u32, bands: u32 },
+    Listed { columns: u32, shift: u32, bands: u32 },
 }
 
 /// Draws the ghosts of `local`.
@@ -122,8 +124,8 @@ impl LocalPass {
         self.doubles.store(listed.ghosts)?;
         self.lists.store(listed.lists)?;
         self.shapes.store(bytemuck::cast_slice(shapes))?;
-        let bells = f64::from(LOCAL_BLOCK * LOCAL_BLOCK) * (listed.lists.len() - starts.len()) as f64;
-        self.scene = Scene::Listed { columns, bands: (bells / MOST_LISTED).ceil() as u32 };
+        let bells = f64::from(1u32 << (2 * listed.shift)) * (listed.lists.len() - starts.len()) as f64;
+        self.scene = Scene::Listed { columns, shift: listed.shift, bands: (bells / MOST_LISTED).ceil() as u32 };
         Ok(())
     }
 
@@ -158,12 +160,12 @@ impl LocalPass {
                 one(points, self.points && fits)?;
                 one(quads, false)?;
             }
-            &Scene::Listed { columns, bands } => {
+            &Scene::Listed { columns, shift, bands } => {
                 let (window, aspect) = (frame.window, frame.pixel_aspect.to_bits());
                 let [low, high] = [aspect as u32 as i32, (aspect >> 32) as i32];
                 let [x, y] = corner;
                 let size = [frame.width as i32, frame.height as i32];
-                let words = [x, y, size[0], size[1], window.x, window.y, columns as i32, 0, low, high, 0, 0];
+                let words = [x, y, size[0], size[1], window.x, window.y, columns as i32, shift as i32, low, high, 0, 0];
                 self.tile.store(&[words])?;
                 self.doubles.bind_storage(GHOSTS);
                 self.lists.bind_storage(PARTIALS);

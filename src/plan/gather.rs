@@ -15,7 +15,7 @@ pub enum Transform {
     /// Every ghost meets the moments of its cell, on the CPU, and the moments meet the modes: `series::moments`. For
     /// ghosts of one size, which their bell's coefficients can multiply afterwards.
     Gather(Cells),
-    /// Not at all: the ghosts are summed at every pixel.
+    /// Not at all: the ghosts are summed at every pixel, or where they reach.
     Direct,
 }
 

@@ -79,12 +79,19 @@ pub(super) struct Told {
     ghosts: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     terms: Option<usize>,
+    /// What a bell may be where it is left out, in units of the scale; and the pixels that all bells reach.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    level: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reached: Option<f64>,
 }
 
 impl From<&Layer> for Told {
     fn from(layer: &Layer) -> Self {
         let ghosts = layer.groups().iter().map(|group| group.ghosts).sum();
         let terms = if let Layer::Series(series) = layer { Some(series.terms()) } else { None };
-        Self { evaluator: layer.evaluator(), ghosts, terms }
+        let local = if let Layer::Local(local) = layer { Some(local) } else { None };
+        let (level, reached) = (local.map(|local| local.level), local.map(|local| local.reached));
+        Self { evaluator: layer.evaluator(), ghosts, terms, level, reached }
     }
 }

@@ -45,7 +45,7 @@ pub use gather::Transform;
 pub use lattice::{Lattice, MOST_NODES};
 pub use layer::{Layer, Series};
 pub use local::Local;
-pub(crate) use local::{Area, LARGEST_POINT};
+pub(crate) use local::{Area, LARGEST_POINT, block_shift};
 pub use modes::{Mode, Modes};
 pub use prediction::{Prediction, Source};
 pub use request::Request;

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::convert::{double_ghost, weight};
 use crate::Result;
 use crate::frame::Frame;
-use crate::gpu::layout::{DoubleGhost, LOCAL_BLOCK, LocalGhost};
+use crate::gpu::layout::{DoubleGhost, LocalGhost};
 use crate::gpu::local::{Drawn, Listed, LocalPass};
 use crate::gpu::runner::Runner;
 use crate::plan::{self, Area, Local, Plan, Precision};
@@ -53,11 +53,12 @@ pub(super) fn upload(plan: &Plan, local: &Local, frame: Frame, pass: &mut LocalP
         let single: Vec<[f32; 4]> = shapes.rows.iter().map(|row| row.map(|x| x as f32)).collect();
         return pass.set_drawn(&Drawn { ghosts: &ghosts, points: points.len() }, &single);
     }
-    let (lists, blocks) = lists(&placed, frame);
+    let shift = plan::block_shift(local.side());
+    let (lists, blocks) = lists(&placed, frame, shift);
     let mut ghosts: Vec<_> =
         placed.par_iter().map(|placed| double_ghost(placed.ghost, placed.weight, placed.bell)).collect();
     ghosts.push(DoubleGhost::NONE);
-    pass.set_listed(runner, &Listed { ghosts: &ghosts, lists: &lists, blocks }, &shapes.rows)
+    pass.set_listed(runner, &Listed { ghosts: &ghosts, lists: &lists, blocks, shift }, &shapes.rows)
 }
 
 /// The parameters of the bells of a layer.
@@ -130,16 +131,16 @@ fn drawn(placed: &Placed<'_>, frame: Frame) -> LocalGhost {
 
 /// For each block of the window where its list begins, and where the last one ends; then the lists, filled up with the ghost
 /// that is none. And how many columns and rows of blocks there are.
-fn lists(placed: &[Placed<'_>], frame: Frame) -> (Vec<u32>, [u32; 2]) {
+fn lists(placed: &[Placed<'_>], frame: Frame, shift: u32) -> (Vec<u32>, [u32; 2]) {
     let window = frame.window;
-    let blocks = [window.width, window.height].map(|side| side.div_ceil(LOCAL_BLOCK));
+    let blocks = [window.width, window.height].map(|side| side.div_ceil(1 << shift));
     let count = (blocks[0] * blocks[1]) as usize;
     let of = |area: &Area| {
         let span = |axis: usize, origin: i32| {
             let side = [window.width, window.height][axis] as i32;
             let [first, last] =
                 [area.first[axis], area.last[axis] - 1].map(|place| (place - origin).clamp(0, side - 1) as u32);
-            first / LOCAL_BLOCK..=last / LOCAL_BLOCK
+            first >> shift..=last >> shift
         };
         let (columns, rows) = (span(0, window.x), span(1, window.y));
         rows.flat_map(move |row| columns.clone().map(move |column| (row * blocks[0] + column) as usize))

@@ -19,6 +19,10 @@ pub fn plan(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
         let ([n, m], period) = (plan.degree(), plan.period());
         write!(out, ", degree {n} x {m}, {} terms, period {:.2} x {:.2}", plan.terms(), period.x, period.y)?;
     }
+    if let Some(local) = plan.local() {
+        let pixels = plan.problem().frame().window.pixels() as f64;
+        write!(out, ", {:.2} bells at a pixel", local.reached / pixels)?;
+    }
     if plan.terms() > 0 && plan.summed() > 0 {
         write!(out, ", {} of {} ghosts summed directly", plan.summed(), plan.ghosts())?;
     }
@@ -47,12 +51,14 @@ pub fn details(out: &mut dyn Write, planned: &Planning) -> io::Result<()> {
 }
 
 fn groups(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
-    for (index, group) in plan.groups().take(GROUPS).enumerate() {
+    let all = plan.layers().iter().flat_map(|layer| layer.groups().iter().map(|group| (layer.evaluator(), group)));
+    for (index, (evaluator, group)) in all.take(GROUPS).enumerate() {
         let label = if index == 0 { "groups" } else { "" };
         let Group { bell, ghosts, smallest, largest, degree: [n, m], .. } = group;
         let more = if largest == smallest { "" } else { " and more" };
         write!(out, "{label:<9}{ghosts} {bell} of {:.3} x {:.3}{more}", smallest.x, smallest.y)?;
         match group.transform {
+            Transform::Direct if evaluator == Evaluator::Local => writeln!(out, ", summed where they reach")?,
             Transform::Direct => writeln!(out, ", summed directly")?,
             Transform::Dispatch => writeln!(out, ", degree {n} x {m}")?,
             Transform::Gather(Cells { counts: [x, y], orders: [p, q] }) => {

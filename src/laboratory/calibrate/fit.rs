@@ -71,9 +71,13 @@ fn constants(arms: &[Arm], times: &[f64]) -> [f64; CostModel::COUNT] {
         let [low, high] = [low, high].map(|index| arms[index].plan.local().map_or(0.0, |local| local.reached));
         high - low
     };
-    let splat = more([one, large]) / reached([one, large]);
-    let quad = (more([one, many]) - reached([one, many]) * splat) / ghosts([one, many]);
-    let beside = reached([one, spread]) * splat + more([COPY, COPY_WIDE]);
+    // Two sums of both, since not all of the small ones are in the picture.
+    let [pixels_of_many, pixels_of_large] = [reached([one, many]), reached([one, large])];
+    let [many, large] = [[one, many], [one, large]].map(|pair| (ghosts(pair), more(pair)));
+    let determinant = pixels_of_many * large.0 - pixels_of_large * many.0;
+    let splat = (many.1 * large.0 - large.1 * many.0) / determinant;
+    let quad = (pixels_of_many * large.1 - pixels_of_large * many.1) / determinant;
+    let beside = reached([one, spread]) * splat + ghosts([one, spread]) * quad + more([COPY, COPY_WIDE]);
     let canvas = (more([one, spread]) - beside) / (arms[spread].pixels() - arms[one].pixels());
     let pass = 1e6 * times[TINY] / GRID_PASSES;
     [bell, term, harmonic, profile, strip, interpolation, spectrum, moment, splat, quad, canvas, pass]

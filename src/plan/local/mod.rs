@@ -54,7 +54,22 @@ const SAMPLE: usize = 512;
 /// What planning takes for each ghost, about, in nanoseconds.
 const PLANNING: f64 = 500.0;
 
+/// The most places in lists of blocks, each a ghost in a block.
+const MOST_LISTED: f64 = (1 << 26) as f64;
+
+/// Pixels along a side of the blocks that have lists of ghosts, as a power of two: small blocks hold little beside small ghosts,
+/// and large ones do not hold a large ghost all too often. `side` is what the ghosts cover along an axis, in the mean.
+pub(crate) fn block_shift(side: f64) -> u32 {
+    if side < 64.0 { 3 } else { 5 }
+}
+
 impl Local {
+    /// Pixels that a ghost covers along an axis, in the mean.
+    pub(crate) fn side(&self) -> f64 {
+        let ghosts: usize = self.groups.iter().map(|group| group.ghosts).sum();
+        (self.reached / ghosts.max(1) as f64).sqrt()
+    }
+
     /// The pixels at which a ghost of a weight is computed.
     pub(crate) fn area(&self, ghost: &Ghost, weight: f64, frame: Frame) -> Area {
         Area::new(ghost, self.level / weight, frame)
@@ -132,8 +147,15 @@ pub(super) fn candidate(problem: &Arc<Problem>, survey: &Survey, request: &Reque
     let predicted = Prediction { dropped, cut, rounding: rounding - storage, storage, ..Prediction::default() };
     let precision = local.precision;
     // The lists of 64-bit ghosts, eight of them a round.
-    if precision == Precision::Double && (problem.ghosts().len() - weighed.dropped) / 8 > request.loop_rounds {
-        return Err(Error::Plan("local would need more rounds of a loop than this renderer runs".into()));
+    if precision == Precision::Double {
+        let kept = problem.ghosts().len() - weighed.dropped;
+        if kept / 8 > request.loop_rounds {
+            return Err(Error::Plan("local would need more rounds of a loop than this renderer runs".into()));
+        }
+        let blocks = local.side() / f64::from(1u32 << block_shift(local.side())) + 1.0;
+        if kept as f64 * blocks * blocks > MOST_LISTED {
+            return Err(Error::Plan("local would need longer lists than it has room for".into()));
+        }
     }
     let layers = vec![Layer::Local(local)];
     Ok(Plan {
