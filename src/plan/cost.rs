@@ -135,17 +135,33 @@ impl CostModel {
 pub struct Cost {
     /// The evaluator.
     pub evaluator: Evaluator,
-    /// Ghosts that are summed directly at every pixel: all of them by `direct`, a few or none beside a series.
+    /// Ghosts that are summed directly at every pixel: all of them by `direct`, a few or none beside other layers.
     pub summed: usize,
+    /// Ghosts that are summed where they reach: all of them by `local`, some or none beside other layers.
+    pub reaching: usize,
     /// Milliseconds for spectrum and field on the machine that the cost model was measured on.
     pub milliseconds: f64,
 }
 
+impl Cost {
+    /// The ghosts that are not computed by the evaluator, in words; none, where it has all of them.
+    pub fn beside(&self) -> Option<String> {
+        let mut words = Vec::new();
+        if self.evaluator != Evaluator::Local && self.reaching > 0 {
+            words.push(format!("{} summed where they reach", self.reaching));
+        }
+        if self.evaluator != Evaluator::Direct && self.summed > 0 {
+            words.push(format!("{} summed at every pixel", self.summed));
+        }
+        (!words.is_empty()).then(|| words.join(" and "))
+    }
+}
+
 /// The cost of layers, by the name of their series where there is one.
 pub(super) fn estimate(layers: &[Layer], precision: Precision, frame: Frame, model: &CostModel) -> Cost {
-    let summed = |layer: &Layer| match layer {
-        Layer::Direct(groups) => groups.iter().map(|group| group.ghosts).sum(),
-        Layer::Series(_) | Layer::Local(_) => 0,
+    let ghosts = |evaluator: Evaluator| {
+        let mine = layers.iter().filter(|layer| layer.evaluator() == evaluator);
+        mine.flat_map(Layer::groups).map(|group| group.ghosts).sum()
     };
     let one = |layer: &Layer| match layer {
         Layer::Direct(groups) if layers.len() == 1 => direct(groups, precision, frame, model) + model.pass,
@@ -162,7 +178,8 @@ pub(super) fn estimate(layers: &[Layer], precision: Precision, frame: Frame, mod
     };
     let evaluator = layers.first().map_or(Evaluator::Direct, Layer::evaluator);
     let nanoseconds: f64 = layers.iter().map(one).sum();
-    Cost { evaluator, summed: layers.iter().map(summed).sum(), milliseconds: nanoseconds * 1e-6 }
+    let (summed, reaching) = (ghosts(Evaluator::Direct), ghosts(Evaluator::Local));
+    Cost { evaluator, summed, reaching, milliseconds: nanoseconds * 1e-6 }
 }
 
 /// What of a series its field's cost depends on.

@@ -75,7 +75,8 @@ pub(super) fn apart(problem: &Arc<Problem>, survey: &Survey, request: &Request) 
         let part = if series { LOCAL * request.tolerance } else { LOCAL_ALONE * left_over };
         let weighed = only(&survey.weighed, &reaching);
         let bounded = local::layer(problem, &weighed, &reaching, part).ok()?;
-        beside.layers.push(Layer::Local(bounded.local));
+        // The first layer gives the plan its name.
+        beside.layers.insert(0, Layer::Local(bounded.local));
         (beside.rounding, beside.cut) = (beside.rounding + bounded.rounding, bounded.cut);
     }
     if !series {

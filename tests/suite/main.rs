@@ -15,6 +15,7 @@ mod extremes;
 mod fourier_bessel;
 mod golden;
 mod graf;
+mod layered;
 mod layers;
 mod light;
 mod local;

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use crate::job::Planning;
-use crate::plan::{Evaluator, Group, Plan, Source, Transform};
+use crate::plan::{Cost, Evaluator, Group, Plan, Source, Transform};
 use crate::series::moments::Cells;
 
 /// Groups that are told one by one.
@@ -23,8 +23,8 @@ pub fn plan(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
         let pixels = plan.problem().frame().window.pixels() as f64;
         write!(out, ", {:.2} bells at a pixel", local.reached / pixels)?;
     }
-    if plan.terms() > 0 && plan.summed() > 0 {
-        write!(out, ", {} of {} ghosts summed directly", plan.summed(), plan.ghosts())?;
+    if let Some(beside) = plan.costs.first().and_then(Cost::beside) {
+        write!(out, ", of {} ghosts {beside}", plan.ghosts())?;
     }
     match plan.dropped {
         0 => writeln!(out),
@@ -86,10 +86,7 @@ fn candidates(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
     let least = plan.cost().unwrap_or(f64::NAN);
     for (index, cost) in plan.costs.iter().enumerate() {
         let name = cost.evaluator.to_string();
-        let beside = match (cost.evaluator, cost.summed) {
-            (Evaluator::Direct, _) | (_, 0) => String::new(),
-            (_, summed) => format!(", with {summed} summed directly"),
-        };
+        let beside = cost.beside().map_or(String::new(), |beside| format!(", with {beside}"));
         match index {
             0 => writeln!(out, "chosen   {name:<8}{:>10.1} ms expected{beside}", cost.milliseconds)?,
             _ => {

@@ -8,7 +8,7 @@ use super::report::{Report, Table, Target};
 use super::stage::{Actor, Stage};
 use crate::certificate::Certificate;
 use crate::measure::{Ratio, Samples, in_turns};
-use crate::plan::{Evaluator, Plan, Precision, Request, plan};
+use crate::plan::{Cost, Evaluator, Plan, Precision, Request, plan};
 use crate::problem::Problem;
 use crate::terminal::progress::Progress;
 use crate::{Error, Result};
@@ -130,10 +130,8 @@ fn outcome(stage: &Stage, seed: u64, size: Option<[u32; 2]>) -> Result<Outcome> 
     let expected = chosen.cost().unwrap_or(f64::INFINITY);
     // The choice stands first; it may be none of the others, where it sums some ghosts beside a series.
     let others = Evaluator::ALL.into_iter().filter_map(|evaluator| plan(&problem, &asked(Some(evaluator))).ok());
-    let others = others.filter(|plan| {
-        let same = plan.evaluator() == chosen.evaluator() && plan.summed() == chosen.summed();
-        !same && plan.cost().is_some_and(|cost| cost <= HOPELESS * expected)
-    });
+    let others = others
+        .filter(|plan| plan.layers() != chosen.layers() && plan.cost().is_some_and(|cost| cost <= HOPELESS * expected));
     let plans: Vec<Plan> = std::iter::once(chosen.clone()).chain(others).collect();
     let mut actors = plans.iter().map(|plan| stage.actor(plan)).collect::<Result<Vec<Actor>>>()?;
     let times = in_turns(stage.rounds, actors.len(), |index| {
@@ -173,7 +171,7 @@ fn outcome(stage: &Stage, seed: u64, size: Option<[u32; 2]>) -> Result<Outcome> 
 /// How a plan computes its field.
 fn by(plan: &Plan) -> String {
     let evaluator = plan.evaluator();
-    let beside = if evaluator != Evaluator::Direct && plan.summed() > 0 { " beside a sum" } else { "" };
+    let beside = plan.costs.first().and_then(Cost::beside).map_or(String::new(), |beside| format!(" with {beside}"));
     let precision = if plan.precision == Precision::Double { " in 64 bits" } else { "" };
     format!("{evaluator}{beside}{precision}")
 }

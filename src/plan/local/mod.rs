@@ -180,7 +180,8 @@ pub(super) fn estimate(problem: &Problem, survey: &Survey, request: &Request) ->
     let (kept, frame) = (problem.ghosts().len() - survey.weighed.dropped, problem.frame());
     let reached = reached(problem, &survey.weighed, request.tolerance);
     let nanoseconds = cost::local(kept, reached, Precision::Single, frame, &request.cost_model);
-    let cost = Cost { evaluator: Evaluator::Local, summed: 0, milliseconds: 1e-6 * nanoseconds };
+    let milliseconds = 1e-6 * nanoseconds;
+    let cost = Cost { evaluator: Evaluator::Local, summed: 0, reaching: kept, milliseconds };
     (cost, PLANNING * kept as f64)
 }
 

@@ -3,7 +3,7 @@
 use egui::{Grid, RichText, Ui, vec2};
 
 use super::by_hand;
-use crate::plan::{Plan, Source};
+use crate::plan::{Cost, Plan, Source};
 use crate::scene::Goal;
 use crate::viewer::control::{Number, buttons, flag, hint};
 use crate::viewer::document::Document;
@@ -40,11 +40,8 @@ pub fn show(ui: &mut Ui, document: &mut Document, stage: &Stage) {
     measured(ui, document, stage);
     let Some(plan) = stage.plan() else { return };
     let note = if stage.is_preview() { ", a preview" } else { "" };
-    let direct = match plan.summed() {
-        summed if summed > 0 && summed < plan.ghosts() => format!(", {summed} of them directly"),
-        _ => String::new(),
-    };
-    ui.label(format!("{} ghosts by {}{direct}{note}", plan.ghosts(), plan.evaluator()));
+    let beside = plan.costs.first().and_then(Cost::beside).map_or(String::new(), |beside| format!(", {beside}"));
+    ui.label(format!("{} ghosts by {}{beside}{note}", plan.ghosts(), plan.evaluator()));
     if plan.terms() > 0 {
         ui.label(format!("degree {} × {}, {} terms", plan.degree()[0], plan.degree()[1], plan.terms()));
     }
@@ -144,10 +141,7 @@ fn candidates(ui: &mut Ui, plan: &Plan) {
         ui.strong("cost");
         ui.end_row();
         for (rank, cost) in plan.costs.iter().enumerate() {
-            let beside = match cost.summed {
-                summed if summed > 0 && summed < plan.ghosts() => format!(" + {summed} direct"),
-                _ => String::new(),
-            };
+            let beside = cost.beside().map_or(String::new(), |beside| format!(", {beside}"));
             let chosen = if rank == 0 { " (chosen)" } else { "" };
             ui.label(format!("{}{beside}{chosen}", cost.evaluator));
             ui.label(format!("{:.1} ms", cost.milliseconds));

@@ -3,6 +3,7 @@
 use egui::{Context, Grid, Id, Ui};
 use egui_plot::{Legend, Line, Plot, PlotPoints};
 
+use crate::plan::Cost;
 use crate::viewer::control;
 use crate::viewer::document::Document;
 use crate::viewer::stage::{Stage, Times};
@@ -87,10 +88,7 @@ fn plan(ui: &mut Ui, stage: &Stage) {
             ui.label(value);
             ui.end_row();
         };
-        let beside = match plan.summed() {
-            0 => String::new(),
-            summed => format!(", {summed} summed directly"),
-        };
+        let beside = plan.costs.first().and_then(Cost::beside).map_or(String::new(), |beside| format!(", {beside}"));
         row("K", "Ghosts that reach the picture", format!("{}{beside}", plan.ghosts()));
         row("terms", "Modes of the series that are kept", plan.terms().to_string());
         row("degree", "Highest harmonic of x and y", format!("{} × {}", plan.degree()[0], plan.degree()[1]));
