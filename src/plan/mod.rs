@@ -124,8 +124,8 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
     found.bound(&survey);
     // What reaches few pixels is as soon planned; where it is not, the others come first.
     let mut local = wanted(&Evaluator::Local);
-    let (least, work) = local::estimate(problem, &survey, request);
-    if local && survey.effort.affords(work) && found.is_beaten_by(&least) {
+    let estimate = local::Estimate::new(problem, &survey, request);
+    if local && estimate.likely && survey.effort.affords(estimate.work) && found.may_lose_to(&estimate.cost) {
         found.take(Evaluator::Local, local::candidate(problem, &survey, request));
         found.bound(&survey);
         local = false;
@@ -146,13 +146,13 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
         found.take(evaluator, plan);
         found.bound(&survey);
     }
-    if local && (request.evaluator.is_some() || found.is_beaten_by(&least)) {
+    if local && (request.evaluator.is_some() || found.may_lose_to(&estimate.cost)) {
         found.take(Evaluator::Local, local::candidate(problem, &survey, request));
         local = false;
     }
     if local {
         // That it cannot be cheaper is all there is to know.
-        found.others.push(least);
+        found.others.push(estimate.cost);
     }
     if let Some(survey) = split::apart(problem, &survey, request) {
         found.bound(&survey);
@@ -186,8 +186,8 @@ impl Found {
         self.plans.iter().filter_map(Plan::cost).for_each(|milliseconds| survey.effort.beside(milliseconds));
     }
 
-    /// Whether something that costs at least so much may be the cheapest.
-    fn is_beaten_by(&self, least: &Cost) -> bool {
+    /// Whether something that costs at least so much may be cheaper than all of the plans.
+    fn may_lose_to(&self, least: &Cost) -> bool {
         self.plans.iter().filter_map(Plan::cost).all(|milliseconds| least.milliseconds < milliseconds)
     }
 
