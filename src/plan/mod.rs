@@ -124,56 +124,16 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
     }
     found.bound(&survey);
     // What reaches few pixels is as soon planned; where it is not, the others come first.
-    let mut local = wanted(&Evaluator::Local);
-    let (least_local, work) = local::estimate(problem, &survey, request);
-    if local && survey.effort.affords(work) && found.is_beaten_by(least_local.milliseconds) {
-        found.take(Evaluator::Local, local::candidate(problem, &survey, request));
-        found.bound(&survey);
-        local = false;
+    let mut local = wanted(&Evaluator::Local).then(|| local::Estimate::new(problem, &survey, request));
+    let early = |estimate: &mut local::Estimate| estimate.likely && survey.effort.affords(estimate.work);
+    if let Some(estimate) = local.take_if(early) {
+        found.local(problem, &survey, request, estimate);
     }
-    // The cheapest of them, more often than not, first. What cannot be cheaper is not planned, unless it was asked for.
-    let least = |evaluator| cost::least(evaluator, problem.frame(), &request.cost_model);
-    let (others, dear): (Vec<Evaluator>, Vec<Evaluator>) = [Evaluator::Grid, Evaluator::Rows, Evaluator::Series]
-        .into_iter()
-        .filter(wanted)
-        .partition(|&evaluator| request.evaluator.is_some() || found.is_beaten_by(least(evaluator)));
-    for evaluator in dear {
-        found.take(evaluator, Err(Error::Plan(format!("the passes of {evaluator} alone would take longer"))));
+    let series = found.series(problem, &survey, request, wanted, given);
+    if let Some(estimate) = local {
+        found.local(problem, &survey, request, estimate);
     }
-    let wide = if others.is_empty() { None } else { Wide::new(problem, &survey, request) };
-    for &evaluator in &others {
-        let plan = candidate(problem, &survey, wide.as_ref(), request, evaluator).and_then(|plan| {
-            // In the period that periodic bells bring with them the copies of others may land on the picture.
-            let total = plan.predicted.total();
-            if given || total <= request.tolerance {
-                return Ok(plan);
-            }
-            Err(Error::Plan(format!("{evaluator} would be off by {total:.1e} in the period of the bells")))
-        });
-        found.take(evaluator, plan);
-        found.bound(&survey);
-    }
-    if local && (request.evaluator.is_some() || found.is_beaten_by(least_local.milliseconds)) {
-        found.take(Evaluator::Local, local::candidate(problem, &survey, request));
-        local = false;
-    }
-    if local {
-        // That it cannot be cheaper is all there is to know.
-        found.others.push(least_local);
-    }
-    match split::apart(problem, &survey, request) {
-        Some(Apart::Series(survey)) => {
-            found.bound(&survey);
-            let wide = Wide::new(problem, &survey, request);
-            let split = others.iter().map(|&evaluator| candidate(problem, &survey, wide.as_ref(), request, evaluator));
-            // One that cannot be had was never asked for by that name.
-            found.plans.extend(split.filter_map(Result::ok));
-        }
-        Some(Apart::Sums(plan)) => {
-            found.plans.extend(Some(*plan).filter(|plan| plan.predicted.total() <= request.tolerance))
-        }
-        None => {}
-    }
+    found.layers(problem, &survey, request, &series);
     Ok(found.cheapest())
 }
 
@@ -199,9 +159,70 @@ impl Found {
         self.plans.iter().filter_map(Plan::cost).for_each(|milliseconds| survey.effort.beside(milliseconds));
     }
 
-    /// Whether something that costs at least so many milliseconds may be the cheapest.
-    fn is_beaten_by(&self, least: f64) -> bool {
+    /// Whether something that costs at least so many milliseconds may be cheaper than all of the plans.
+    fn may_lose_to(&self, least: f64) -> bool {
         self.plans.iter().filter_map(Plan::cost).all(|milliseconds| least < milliseconds)
+    }
+
+    /// Plans a local sum, unless it cannot be the cheapest.
+    fn local(&mut self, problem: &Arc<Problem>, survey: &Survey, request: &Request, estimate: local::Estimate) {
+        if request.evaluator.is_none() && !self.may_lose_to(estimate.cost.milliseconds) {
+            // That is all there is to know.
+            self.others.push(estimate.cost);
+            return;
+        }
+        self.take(Evaluator::Local, local::candidate(problem, survey, request));
+        self.bound(survey);
+    }
+
+    /// Plans the series that are wanted, but for those that cannot be the cheapest; and says which it tried.
+    fn series(
+        &mut self,
+        problem: &Arc<Problem>,
+        survey: &Survey,
+        request: &Request,
+        wanted: impl Fn(&Evaluator) -> bool,
+        given: bool,
+    ) -> Vec<Evaluator> {
+        let least = |evaluator| cost::least(evaluator, problem.frame(), &request.cost_model);
+        // The cheapest of them, more often than not, first.
+        let (tried, dear): (Vec<Evaluator>, Vec<Evaluator>) = [Evaluator::Grid, Evaluator::Rows, Evaluator::Series]
+            .into_iter()
+            .filter(wanted)
+            .partition(|&evaluator| request.evaluator.is_some() || self.may_lose_to(least(evaluator)));
+        for evaluator in dear {
+            self.take(evaluator, Err(Error::Plan(format!("the passes of {evaluator} alone would take longer"))));
+        }
+        let wide = if tried.is_empty() { None } else { Wide::new(problem, survey, request) };
+        for &evaluator in &tried {
+            let plan = candidate(problem, survey, wide.as_ref(), request, evaluator).and_then(|plan| {
+                // In the period that periodic bells bring with them the copies of others may land on the picture.
+                let total = plan.predicted.total();
+                if given || total <= request.tolerance {
+                    return Ok(plan);
+                }
+                Err(Error::Plan(format!("{evaluator} would be off by {total:.1e} in the period of the bells")))
+            });
+            self.take(evaluator, plan);
+            self.bound(survey);
+        }
+        tried
+    }
+
+    /// Plans several layers, where that is likely to be cheaper. What cannot be had was never asked for by that name.
+    fn layers(&mut self, problem: &Arc<Problem>, survey: &Survey, request: &Request, series: &[Evaluator]) {
+        match split::apart(problem, survey, request) {
+            Some(Apart::Series(survey)) => {
+                self.bound(&survey);
+                let wide = Wide::new(problem, &survey, request);
+                let plans =
+                    series.iter().map(|&evaluator| candidate(problem, &survey, wide.as_ref(), request, evaluator));
+                let kept = plans.filter_map(Result::ok).filter(|plan| plan.predicted.total() <= request.tolerance);
+                self.plans.extend(kept);
+            }
+            Some(Apart::Sums(plan)) if plan.predicted.total() <= request.tolerance => self.plans.push(*plan),
+            Some(Apart::Sums(_)) | None => {}
+        }
     }
 
     fn cheapest(self) -> std::result::Result<Plan, Vec<Error>> {

@@ -56,19 +56,20 @@ fn small_ghosts_reach_beside_a_series_of_wide_ones() {
             let name = format!("{bell} at {tolerance:e}");
             assert_eq!(kinds(&plan), [Evaluator::Grid, Evaluator::Local], "{name}: {:?}", plan.costs);
             assert_eq!(plan.evaluator(), Evaluator::Grid, "the series names the plan");
-            assert!(plan.costs[0].reaching >= 200 && plan.ghosts() + plan.dropped == ghosts.len(), "{:?}", plan.costs);
+            assert!(plan.costs[0].reaching + plan.dropped >= 200, "{:?}", plan.costs);
+            assert_eq!(plan.ghosts() + plan.dropped, ghosts.len(), "every ghost has one layer");
             hold(&name, &plan);
         }
     }
 }
 
 #[test]
-fn small_ghosts_reach_beside_a_few_wide_ones_that_are_summed_everywhere() {
-    let ghosts = mixed(4, 400, &Bell::CosineSquared);
+fn small_ghosts_reach_beside_wide_ones_that_are_summed_everywhere() {
+    let ghosts = mixed(40, 400, &Bell::CosineSquared);
     for tolerance in [1e-2, 1e-4] {
-        let plan = planned(&ghosts, model(5.0, 1e4), tolerance);
+        let plan = planned(&ghosts, model(0.2, 1e4), tolerance);
         assert_eq!(kinds(&plan), [Evaluator::Direct, Evaluator::Local], "{:?}", plan.costs);
-        assert!(plan.summed() >= 4 && plan.costs[0].reaching >= 300, "{:?}", plan.costs);
+        assert!(plan.summed() >= 30 && plan.costs[0].reaching >= 300, "{:?}", plan.costs);
         hold(&format!("at {tolerance:e}"), &plan);
     }
 }
@@ -83,7 +84,7 @@ fn all_three_kinds_stand_beside_each_other() {
         size: period,
         ..ghost
     }));
-    let plan = planned(&ghosts, model(2.0, 1.0), 1e-4);
+    let plan = planned(&ghosts, model(0.5, 0.1), 1e-4);
     assert_eq!(kinds(&plan), [Evaluator::Direct, Evaluator::Grid, Evaluator::Local], "{:?}", plan.costs);
     hold("all three", &plan);
 }
@@ -91,8 +92,8 @@ fn all_three_kinds_stand_beside_each_other() {
 /// Layers meet at tiles, and leave no trace for the next scene.
 #[test]
 fn layers_are_the_same_bits_in_tiles_and_after_another_scene() {
-    let (mine, theirs) = (mixed(300, 200, &Bell::Gaussian), mixed(4, 400, &Bell::CosineSquared));
-    let (mine, theirs) = (planned(&mine, model(5.0, 1.0), 1e-3), planned(&theirs, model(5.0, 1e4), 1e-3));
+    let (mine, theirs) = (mixed(300, 200, &Bell::Gaussian), mixed(40, 400, &Bell::CosineSquared));
+    let (mine, theirs) = (planned(&mine, model(5.0, 1.0), 1e-3), planned(&theirs, model(0.2, 1e4), 1e-3));
     on_each_backend(|backend, renderer| {
         let once = bits(&glare(renderer, &mine, FRAME));
         glare(renderer, &theirs, FRAME);

@@ -64,7 +64,7 @@ fn every_bell_is_exact_at_every_tolerance() {
     let mut chance = Chance::new(1);
     let mut plans = Vec::new();
     for bell in Bell::examples() {
-        let ghosts = small(&mut chance, &bell, 120, FRAME);
+        let ghosts = small(&mut chance, &bell, 80, FRAME);
         plans
             .extend(TOLERANCES.map(|tolerance| (format!("{bell} at {tolerance:e}"), local(&ghosts, FRAME, tolerance))));
     }
@@ -89,7 +89,7 @@ fn tolerances_that_floats_have_need_no_series() {
 
 #[test]
 fn crowds_are_added_up_within_their_bounds() {
-    let frame = Frame::full(48, 27);
+    let frame = Frame::full(32, 18);
     let mut chance = Chance::new(9);
     let one = scenes::one([0.21, -0.13], 0.2, [1.0, 0.7, 0.3]);
     // Equal ones round alike, time after time.

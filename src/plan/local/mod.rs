@@ -175,14 +175,26 @@ fn crowding(problem: &Problem, weighed: &Weighed, level: f64) -> f64 {
     3.0 + 1.5 * reached(problem, weighed, level) / problem.frame().window.pixels() as f64
 }
 
-/// What `local` costs at least, by a few of the ghosts, and what it costs to plan it, in nanoseconds.
-pub(super) fn estimate(problem: &Problem, survey: &Survey, request: &Request) -> (Cost, f64) {
-    let (kept, frame) = (problem.ghosts().len() - survey.weighed.dropped, problem.frame());
-    let reached = reached(problem, &survey.weighed, request.tolerance);
-    let nanoseconds = cost::local(kept, reached, Precision::Single, frame, &request.cost_model);
-    let milliseconds = 1e-6 * nanoseconds;
-    let cost = Cost { evaluator: Evaluator::Local, summed: 0, reaching: kept, milliseconds };
-    (cost, PLANNING * kept as f64)
+/// What is known of `local` before it is planned, by a few of the ghosts.
+pub(super) struct Estimate {
+    /// What it costs at least.
+    pub cost: Cost,
+    /// What it costs to plan it, in nanoseconds.
+    pub work: f64,
+    /// Whether so few bells meet at a pixel that it is likely to be worth that.
+    pub likely: bool,
+}
+
+impl Estimate {
+    pub fn new(problem: &Problem, survey: &Survey, request: &Request) -> Self {
+        const FEW: f64 = 50.0;
+        let (kept, frame) = (problem.ghosts().len() - survey.weighed.dropped, problem.frame());
+        let reached = reached(problem, &survey.weighed, request.tolerance);
+        let nanoseconds = cost::local(kept, reached, Precision::Single, frame, &request.cost_model);
+        let milliseconds = 1e-6 * nanoseconds;
+        let cost = Cost { evaluator: Evaluator::Local, summed: 0, reaching: kept, milliseconds };
+        Self { cost, work: PLANNING * kept as f64, likely: reached <= FEW * frame.window.pixels() as f64 }
+    }
 }
 
 /// Pixels that a group reaches where it is left out below a level, by a few of its ghosts.
