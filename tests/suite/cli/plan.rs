@@ -80,12 +80,12 @@ fn what_cannot_be_had_is_refused_in_the_plan_with_the_reason() {
     let place = Workplace::new();
     place.photo("in.exr");
     place.text("scene.toml", "[[ghost]]\ncenter = [0.0, 0.0]\nsize = 0.000001\nradiance = [1.0, 1.0, 1.0]\n");
-    let plan = place.json(&["plan", "in.exr", "--scene", "scene.toml", "--size", "1920x1080", "--json"]);
+    let plan = place.json(&["plan", "in.exr", "--scene", "scene.toml", "--size", "1921x1081", "--json"]);
     assert_eq!(plan["plan"]["evaluator"], "direct", "{plan}");
     let refused = plan["plan"]["refused"].as_array().expect("a list");
     assert_eq!(refused.len(), 3, "{plan}");
     assert!(refused.iter().all(|one| one["reason"].as_str().is_some_and(|reason| reason.contains("degree"))), "{plan}");
-    let text = place.vglare(&["plan", "in.exr", "--scene", "scene.toml", "--size", "1920x1080"]).succeeded().stdout();
+    let text = place.vglare(&["plan", "in.exr", "--scene", "scene.toml", "--size", "1921x1081"]).succeeded().stdout();
     assert!(text.lines().filter(|line| line.starts_with("refused")).count() == 3, "{text}");
 }
 

@@ -72,7 +72,7 @@ fn scene(seed: u64) -> Scene {
     let ghosts = ghosts(&mut chance, seed, frame);
     let tolerance = chance.octaves(1e-6, 1e-1);
     // Each evaluator in turn, and the plan's own choice; and that, too, where the one cannot do it.
-    let turn = Evaluator::ALL.get(seed as usize % 5).copied();
+    let turn = Evaluator::ALL.get(seed as usize % 6).copied();
     let mut reasons = Vec::new();
     for evaluator in [turn, None] {
         let mut asked = tolerance;

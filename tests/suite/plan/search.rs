@@ -103,7 +103,7 @@ fn at_the_floor_is_as_exact_as_it_gets() {
 #[test]
 fn what_is_refused_is_named_with_the_reason() {
     // So large that the passes of no series alone take longer than the sum.
-    let frame = Frame::full(1920, 1080);
+    let frame = Frame::full(1921, 1081);
     let tiny = [scenes::one([0.0, 0.0], 1e-6, [1.0, 2.0, 3.0])];
     let chosen = plan(&tiny, frame, &Request::new(1e-3)).unwrap();
     let refused: Vec<_> = chosen.refused.iter().map(|refusal| refusal.evaluator).collect();
