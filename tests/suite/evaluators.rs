@@ -9,7 +9,7 @@ use vglare::renderer::Picture;
 use vglare::scene::Ghost;
 
 use crate::support::check::{Worst, within};
-use crate::support::{glare, on_each_backend, on_one_backend, plan, plan_with, rgb, scenes};
+use crate::support::{bits, glare, long, on_each_backend, on_one_backend, plan, plan_with, rgb, scenes};
 use vglare::renderer::Settings;
 
 const TOLERANCES: [f64; 3] = [1e-2, 1e-3, 1e-4];
@@ -54,15 +54,27 @@ impl Case {
     }
 }
 
-/// Plans every case, then measures them on each backend; `floors` is how many may be below the floor.
+/// Plans every case, then measures them; `floors` is how many may be below the floor.
 fn keep_the_promise(width: u32, height: u32, counts: &[usize], tolerances: &[f64], floors: usize) {
+    keep_the_promise_by(&Evaluator::ALL, width, height, counts, tolerances, floors);
+}
+
+/// The same by some evaluators.
+fn keep_the_promise_by(
+    evaluators: &[Evaluator],
+    width: u32,
+    height: u32,
+    counts: &[usize],
+    tolerances: &[f64],
+    floors: usize,
+) {
     let frame = Frame::full(width, height);
     let mut refused = 0;
     let mut cases = Vec::new();
     for &count in counts {
         let ghosts = scenes::random(count as u64 + 1, count, frame);
         let name = format!("{width}x{height}, K = {count}");
-        for evaluator in Evaluator::ALL {
+        for &evaluator in evaluators {
             // Where most of them reach all of a large picture it is no faster than the direct sum, and looks at every pixel.
             if evaluator == Evaluator::Local && count * frame.window.pixels() > 100_000_000 {
                 continue;
@@ -79,7 +91,7 @@ fn keep_the_promise(width: u32, height: u32, counts: &[usize], tolerances: &[f64
     let measured = on_one_backend(|backend, renderer| -> Vec<f64> {
         cases.iter().map(|case| case.measure(backend, renderer)).collect()
     });
-    for evaluator in Evaluator::ALL {
+    for &evaluator in evaluators {
         let (mut error, mut share) = (Worst::default(), Worst::default());
         for (case, &relative) in cases.iter().zip(&measured) {
             if case.plan.evaluator() == evaluator {
@@ -122,7 +134,10 @@ fn every_evaluator_keeps_its_promise_at_1921x1081() {
 
 #[test]
 fn every_evaluator_keeps_its_promise_for_a_hundred_thousand_ghosts() {
-    keep_the_promise(1921, 1081, &[100_000], &[1e-4], 0);
+    // A series' evaluators differ in what comes after the spectrum, which knows nothing of how many ghosts there are: one
+    // of them is enough for all but the long form.
+    let evaluators = if long() { &Evaluator::ALL[..] } else { &[Evaluator::Direct, Evaluator::Rows] };
+    keep_the_promise_by(evaluators, 1921, 1081, &[100_000], &[1e-4], 0);
 }
 
 #[test]
@@ -145,26 +160,23 @@ fn the_glare_of_small_pictures_keeps_the_promise_at_every_pixel() {
 }
 
 #[test]
-fn the_backends_agree() {
-    // They share their code generator, so they may differ by some f32 roundings of intermediate sums at most.
-    const LIMIT: f64 = 1e-5;
-    let frame = Frame::full(133, 77);
+fn the_backends_give_the_same_bits() {
+    // They share their code generator, so that what holds for the numbers of one holds for the other's.
+    let frame = Frame::full(71, 41);
     let ghosts = scenes::random(3, 60, frame);
-    let pixels = scenes::every_pixel(frame);
     let results = on_each_backend(|_, renderer| {
         Evaluator::ALL.map(|evaluator| {
             let plan = plan_with(&ghosts, frame, 1e-3, evaluator);
-            let alone = rgb(&glare(renderer, &plan, frame));
+            let alone = bits(&glare(renderer, &plan, frame));
             let mut picture: Vec<[f32; 4]> =
                 (0..frame.window.pixels()).map(|i| [i as f32 * 1e-3, 0.5, 2.0, 1.0]).collect();
             renderer.composite(frame, &mut picture, &Settings::default()).unwrap();
-            (alone, rgb(&picture))
+            (alone, bits(&picture))
         })
     });
     for (evaluator, (egl, osmesa)) in Evaluator::ALL.into_iter().zip(results[0].iter().zip(&results[1])) {
-        let alone = within(LIMIT, &format!("{evaluator}: glare"), &pixels, &egl.0, &osmesa.0).relative;
-        let picture = within(LIMIT, &format!("{evaluator}: composite"), &pixels, &egl.1, &osmesa.1).relative;
-        println!("{evaluator}: glare differs by {alone:.1e}, composite by {picture:.1e}");
+        assert!(egl.0 == osmesa.0, "{evaluator}: glare");
+        assert!(egl.1 == osmesa.1, "{evaluator}: composite");
     }
 }
 

@@ -85,8 +85,9 @@ fn the_parabola_is_written_with_its_numbers_and_keeps_its_bound() {
 fn the_periodic_gaussians_come_from_cpu_and_gpu_alike() {
     let place = Workplace::new();
     let mut fields = Vec::new();
-    for (name, tables) in [("fourier-1d", 5), ("fourier-1d-gpu", 4)] {
-        for backend in ["egl", "osmesa"] {
+    // Of the first, the numbers come from the CPU.
+    for (name, tables, backends) in [("fourier-1d", 5, &["egl"][..]), ("fourier-1d-gpu", 4, &["egl", "osmesa"])] {
+        for backend in backends {
             let out = format!("{name}-{backend}");
             let args = ["rex", name, "--as-printed", "--converged", "40", "--backend", backend, "-o", &out];
             place.vglare(&args).succeeded();

@@ -12,7 +12,7 @@ use vglare::series::{Bell, Modes};
 
 use super::{look, measured, request};
 use crate::support::check::Worst;
-use crate::support::{on_backend, on_one_backend, plan, scenes};
+use crate::support::{long, on_backend, on_one_backend, plan, scenes};
 
 /// Rounding may use this part of its bound, as in the suite's `rounding`.
 const SHARE: f64 = 0.6;
@@ -26,10 +26,12 @@ fn ridge(narrow: f64, along: usize, frame: Frame) -> Ghost {
 
 #[test]
 fn degrees_up_to_the_highest_round_as_predicted() {
-    let frame = Frame::full(65, 37);
+    let frame = Frame::full(47, 27);
+    let degrees: &[u32] = &[0, 1, 16, 250, 1000, HIGHEST_DEGREE, 500, 2000, 3000];
+    let degrees = if long() { degrees } else { &degrees[..6] };
     let share = on_backend(Backend::ALL[0], |renderer| {
         let mut worst = Worst::default();
-        for degree in [0, 1, 16, 250, 500, 1000, 2000, 3000, HIGHEST_DEGREE] {
+        for &degree in degrees {
             for along in 0..2 {
                 // A period that leaves nothing to copies, and a size that leaves nothing to truncation.
                 let mut period = DVec2::splat(20.0);
