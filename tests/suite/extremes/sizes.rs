@@ -63,8 +63,8 @@ fn sizes_from_a_thousandth_of_a_pixel_to_a_hundred_periods() {
                     let ghosts = [ghost(bell.clone(), center, pixels * pixel)];
                     let mut had = 0;
                     for evaluator in choices(&bell) {
-                        // Some 10,000 to 100,000 terms by a lattice take a CPU tens of seconds; rows has them, too.
-                        let dear = evaluator == Some(Evaluator::Grid) && bell != Bell::Gaussian && pixels < 1.0;
+                        // Tens of thousands of terms by a lattice take a CPU tens of seconds; rows has them, too.
+                        let dear = evaluator == Some(Evaluator::Grid) && bell != Bell::Gaussian && pixels <= 1.0;
                         if dear && !long() {
                             continue;
                         }
