@@ -30,10 +30,19 @@ const ATTRIBUTES: [Attribute; 5] = [
     Attribute { location: 4, kind: glow::UNSIGNED_INT, count: 1, first: 13 },
 ];
 
-/// Ghosts to be drawn: those that are points first.
+/// Ghosts to be drawn, and which of them have which bell, one after the other.
 pub(crate) struct Drawn<'a> {
     pub ghosts: &'a [LocalGhost],
-    pub points: usize,
+    pub kinds: &'a [Kind],
+}
+
+/// Ghosts of one kind of bell, by their places: those that are points, then the others. A program for each: Mesa's software
+/// renderer would compute all bells at every pixel where a shader chose between them.
+pub(crate) struct Kind {
+    /// The bell's file in `shaders/`.
+    pub bell: &'static str,
+    pub points: Range<usize>,
+    pub quads: Range<usize>,
 }
 
 /// Ghosts in 64-bit floats, and for each block of pixels, row by row, where its list begins among the numbers that follow; and
@@ -49,8 +58,15 @@ pub(crate) struct Listed<'a> {
 /// What is on the device of either.
 enum Scene {
     Nothing,
-    Drawn { points: Vec<Range<usize>>, quads: Vec<Range<usize>> },
+    Drawn(Vec<Batches>),
     Listed { columns: u32, shift: u32, bands: u32 },
+}
+
+/// The ghosts of one kind of bell as so many draws.
+struct Batches {
+    bell: &'static str,
+    points: Vec<Range<usize>>,
+    quads: Vec<Range<usize>>,
 }
 
 /// Draws the ghosts of `local`.
@@ -104,11 +120,12 @@ impl LocalPass {
     ///
     /// # Errors
     /// [`Error::Gl`] where the driver refuses.
-    pub fn set_drawn(&mut self, Drawn { ghosts, points }: &Drawn<'_>, shapes: &[[f32; 4]]) -> Result<()> {
+    pub fn set_drawn(&mut self, Drawn { ghosts, kinds }: &Drawn<'_>, shapes: &[[f32; 4]]) -> Result<()> {
         self.ghosts.store(ghosts)?;
         self.shapes.store(bytemuck::cast_slice(shapes))?;
-        let (points, quads) = (batches(&ghosts[..*points], 0), batches(&ghosts[*points..], *points));
-        self.scene = Scene::Drawn { points, quads };
+        let of = |range: &Range<usize>| batches(&ghosts[range.clone()], range.start);
+        let drawn = |kind: &Kind| Batches { bell: kind.bell, points: of(&kind.points), quads: of(&kind.quads) };
+        self.scene = Scene::Drawn(kinds.iter().map(drawn).collect());
         Ok(())
     }
 
@@ -129,7 +146,8 @@ impl LocalPass {
         Ok(())
     }
 
-    /// Draws the canvas of a tile, whose first pixel is `corner` in the picture of a frame, and binds it.
+    /// Draws the canvas of a tile, whose first pixel is `corner` in the picture of a frame, and binds it. `bell` is the file of
+    /// the bell that listed ghosts have, or of all bells.
     ///
     /// # Errors
     /// [`Error::Gl`] where the driver refuses.
@@ -146,19 +164,21 @@ impl LocalPass {
         self.tile.bind_uniform(PASS);
         match &self.scene {
             Scene::Nothing => canvas.clear(0.0),
-            Scene::Drawn { points, quads } => {
+            Scene::Drawn(kinds) => {
                 let size = [width, height].map(|side| side as i32);
                 let widest = self.device.info().limits.viewport;
                 let fits = [0, 1].iter().all(|&axis| size[axis] + 2 * MARGIN <= widest[axis] as i32);
                 canvas.clear(0.0);
-                let mut one = |ranges: &[Range<usize>], points: bool| {
+                let mut one = |bell: &str, ranges: &[Range<usize>], points: bool| {
                     let margin = if points { MARGIN } else { 0 };
                     self.tile.store(&[[corner[0], corner[1], size[0], size[1], margin, 0, 0, 0, 0, 0, 0, 0]])?;
                     let how = How { points, margin, array: self.array, bell };
                     add(runner, canvas, &self.ghosts, ranges, &how)
                 };
-                one(points, self.points && fits)?;
-                one(quads, false)?;
+                for Batches { bell, points, quads } in kinds {
+                    one(bell, points, self.points && fits)?;
+                    one(bell, quads, false)?;
+                }
             }
             &Scene::Listed { columns, shift, bands } => {
                 let (window, aspect) = (frame.window, frame.pixel_aspect.to_bits());

@@ -167,10 +167,7 @@ pub(super) fn estimate(layers: &[Layer], precision: Precision, frame: Frame, mod
         Layer::Direct(groups) if layers.len() == 1 => direct(groups, precision, frame, model) + model.pass,
         // Beside a series it is no pass of its own.
         Layer::Direct(groups) => direct(groups, precision, frame, model),
-        Layer::Local(layer) => {
-            let ghosts = layer.groups.iter().map(|group| group.ghosts).sum();
-            local(ghosts, layer.reached, layer.precision, frame, model)
-        }
+        Layer::Local(layer) => local(&layer.groups, layer.reached, layer.precision, frame, model),
         Layer::Series(series) => {
             let spectrum: f64 = series.groups.iter().map(|group| gather::cost(group, &group.transform, model)).sum();
             spectrum + field(series.evaluator, &Size::of(series), frame, model)
@@ -272,21 +269,47 @@ fn in_gaussians(bell: &Bell, precision: Precision) -> f64 {
 }
 
 /// What drawing ghosts where they reach so many pixels in all costs, in nanoseconds.
-pub(super) fn local(ghosts: usize, reached: f64, precision: Precision, frame: Frame, model: &CostModel) -> f64 {
-    let canvas = frame.window.pixels() as f64 * model.canvas + 2.0 * model.pass;
+pub(super) fn local<'a>(
+    groups: impl IntoIterator<Item = &'a Group>,
+    reached: f64,
+    precision: Precision,
+    frame: Frame,
+    model: &CostModel,
+) -> f64 {
+    let (mut ghosts, mut bells) = (0.0, 0.0);
+    for group in groups {
+        ghosts += group.ghosts as f64;
+        bells += group.ghosts as f64 * in_gaussians(&group.bell, precision);
+    }
+    let pixels = frame.window.pixels() as f64;
+    let canvas = pixels * model.canvas + 2.0 * model.pass + ghosts * model.quad;
+    if ghosts == 0.0 {
+        return canvas;
+    }
     match precision {
-        Precision::Single => ghosts as f64 * model.quad + reached * model.splat + canvas,
+        Precision::Single => reached * splat(bells / ghosts, model) + canvas,
         // By lists of blocks, of which a ghost has some that it hardly reaches.
         Precision::Double => {
-            let side = (reached / ghosts.max(1) as f64).sqrt();
+            let side = (reached / ghosts).sqrt();
             let side = side + f64::from((1u32 << block_shift(side)) - 1);
-            let listed = (ghosts as f64 * side * side).min(ghosts as f64 * frame.window.pixels() as f64);
-            ghosts as f64 * model.quad + listed * model.bell * LISTED + canvas
+            let listed = (ghosts * side * side).min(ghosts * pixels);
+            let slower = LISTED * bells / ghosts / in_gaussians(&Bell::Gaussian, precision);
+            listed * model.bell * slower + canvas
         }
     }
 }
 
-/// How many times as long as by `direct` a bell takes in 64-bit floats where it comes from a list: 9 to 11 on llvmpipe.
+/// What a bell costs that is drawn at one pixel, of as many Gaussians.
+fn splat(in_gaussians: f64, model: &CostModel) -> f64 {
+    model.splat + (in_gaussians - 1.0) * model.bell
+}
+
+/// What a group that reaches so many pixels adds to a local layer, in nanoseconds.
+pub(super) fn reaching(group: &Group, reached: f64, model: &CostModel) -> f64 {
+    group.ghosts as f64 * model.quad + reached * splat(in_gaussians(&group.bell, Precision::Single), model)
+}
+
+/// How many times as long as by `direct` a bell takes in 64-bit floats where it comes from a list, a Gaussian: 9 to 11 on llvmpipe.
 const LISTED: f64 = 10.0;
 
 /// What `direct` does at a pixel beside its bells, in bells: 2 to 3 on llvmpipe, for 1 to 6 ghosts.

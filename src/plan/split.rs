@@ -172,7 +172,7 @@ impl<'a> Cutting<'a> {
         let level = LOCAL * request.tolerance / CROWDING;
         let reaching = groups.iter().map(|group| {
             let reached = local::reached_by(problem, &survey.weighed, group, level);
-            group.ghosts as f64 * model.quad + reached * model.splat
+            cost::reaching(group, reached, model)
         });
         let reaching = reaching.collect();
         Some(Self { groups, frame: problem.frame(), model, period, needs, reaching })
@@ -240,7 +240,7 @@ impl<'a> Cutting<'a> {
 
     /// What a local layer costs however few its ghosts are.
     fn canvas(&self) -> f64 {
-        cost::local(0, 0.0, Precision::Single, self.frame, self.model)
+        cost::local([], 0.0, Precision::Single, self.frame, self.model)
     }
 
     fn add(&self, summed: &mut Summed, index: usize) {

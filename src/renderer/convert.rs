@@ -47,7 +47,7 @@ fn bell_file(plan: &Plan) -> &'static str {
     }
 }
 
-/// The one bell that the ghosts of a local layer have, or all of them.
+/// The one bell that the listed ghosts of a local layer have, or all of them.
 pub(super) fn local_bell(local: &Local) -> &'static str {
     let bell = local.groups.first().map_or(&Bell::Gaussian, |group| &group.bell);
     let same = local.groups.iter().all(|group| group.bell.kind() == bell.kind());

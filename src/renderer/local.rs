@@ -7,7 +7,7 @@ use super::convert::{double_ghost, weight};
 use crate::Result;
 use crate::frame::Frame;
 use crate::gpu::layout::{DoubleGhost, LocalGhost};
-use crate::gpu::local::{Drawn, Listed, LocalPass};
+use crate::gpu::local::{Drawn, Kind, Listed, LocalPass};
 use crate::gpu::runner::Runner;
 use crate::plan::{self, Area, Local, Plan, Precision};
 use crate::scene::Ghost;
@@ -36,7 +36,7 @@ pub(super) fn upload(plan: &Plan, local: &Local, frame: Frame, pass: &mut LocalP
     let shapes = Shapes::of(plan, local, as_drawn);
     let mut placed = Vec::new();
     for (group, &begin) in local.groups.iter().zip(&shapes.begins) {
-        let kind = if shapes.several { group.bell.kind() << 24 } else { 0 };
+        let kind = if shapes.several && !as_drawn { group.bell.kind() << 24 } else { 0 };
         let one = |(place, &index): (usize, &u32)| {
             let ghost = &plan.problem().ghosts()[index as usize];
             let weight = weight(ghost, plan);
@@ -48,10 +48,18 @@ pub(super) fn upload(plan: &Plan, local: &Local, frame: Frame, pass: &mut LocalP
         placed.par_extend(members.filter(|placed| placed.area.first != placed.area.last));
     }
     if as_drawn {
-        let (points, quads): (Vec<_>, Vec<_>) = placed.iter().partition(|placed| placed.area.point);
-        let ghosts: Vec<_> = points.par_iter().chain(&quads).map(|placed| drawn(placed, frame)).collect();
+        let mut kinds: Vec<Kind> = Vec::new();
+        // Stable: the order in which ghosts are added up is that of the scene but for this.
+        placed.sort_by_key(|placed| (placed.ghost.bell.kind(), !placed.area.point));
+        for ghosts in placed.chunk_by(|a, b| a.ghost.bell.kind() == b.ghost.bell.kind()) {
+            let first = kinds.last().map_or(0, |kind| kind.quads.end);
+            let points = first + ghosts.iter().take_while(|placed| placed.area.point).count();
+            let bell = ghosts[0].ghost.bell.shape().shader();
+            kinds.push(Kind { bell, points: first..points, quads: points..first + ghosts.len() });
+        }
+        let ghosts: Vec<_> = placed.par_iter().map(|placed| drawn(placed, frame)).collect();
         let single: Vec<[f32; 4]> = shapes.rows.iter().map(|row| row.map(|x| x as f32)).collect();
-        return pass.set_drawn(&Drawn { ghosts: &ghosts, points: points.len() }, &single);
+        return pass.set_drawn(&Drawn { ghosts: &ghosts, kinds: &kinds }, &single);
     }
     let shift = plan::block_shift(local.side());
     let (lists, blocks) = lists(&placed, frame, shift);

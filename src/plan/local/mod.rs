@@ -190,7 +190,7 @@ impl Estimate {
         const FEW: f64 = 50.0;
         let (kept, frame) = (problem.ghosts().len() - survey.weighed.dropped, problem.frame());
         let reached = reached(problem, &survey.weighed, request.tolerance);
-        let nanoseconds = cost::local(kept, reached, Precision::Single, frame, &request.cost_model);
+        let nanoseconds = cost::local(&survey.groups, reached, Precision::Single, frame, &request.cost_model);
         let milliseconds = 1e-6 * nanoseconds;
         let cost = Cost { evaluator: Evaluator::Local, summed: 0, reaching: kept, milliseconds };
         Self { cost, work: PLANNING * kept as f64, likely: reached <= FEW * frame.window.pixels() as f64 }
