@@ -73,6 +73,7 @@ pub(super) fn apart(problem: &Arc<Problem>, survey: &Survey, request: &Request) 
     if !reaching.is_empty() {
         let left_over = request.tolerance - survey.weighed.dropped_error - beside.rounding;
         let part = if series { LOCAL * request.tolerance } else { LOCAL_ALONE * left_over };
+        survey.effort.spend(local::work(reaching.iter().map(|group| group.ghosts).sum())).ok()?;
         let weighed = only(&survey.weighed, &reaching);
         let bounded = local::layer(problem, &weighed, &reaching, part).ok()?;
         // The first layer gives the plan its name.

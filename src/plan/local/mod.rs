@@ -175,6 +175,11 @@ fn crowding(problem: &Problem, weighed: &Weighed, level: f64) -> f64 {
     3.0 + 1.5 * reached(problem, weighed, level) / problem.frame().window.pixels() as f64
 }
 
+/// What planning a local layer of so many ghosts takes about, in nanoseconds.
+pub(super) fn work(ghosts: usize) -> f64 {
+    PLANNING * ghosts as f64
+}
+
 /// What is known of `local` before it is planned, by a few of the ghosts.
 pub(super) struct Estimate {
     /// What it costs at least.
@@ -193,7 +198,7 @@ impl Estimate {
         let nanoseconds = cost::local(&survey.groups, reached, Precision::Single, frame, &request.cost_model);
         let milliseconds = 1e-6 * nanoseconds;
         let cost = Cost { evaluator: Evaluator::Local, summed: 0, reaching: kept, milliseconds };
-        Self { cost, work: PLANNING * kept as f64, likely: reached <= FEW * frame.window.pixels() as f64 }
+        Self { cost, work: work(kept), likely: reached <= FEW * frame.window.pixels() as f64 }
     }
 }
 
