@@ -118,6 +118,27 @@ pub(super) fn candidate(
     }
 }
 
+/// A plan of layers, with what they cost.
+pub(super) fn made(
+    problem: &Arc<Problem>,
+    weighed: &Weighed,
+    request: &Request,
+    layers: Vec<Layer>,
+    precision: Precision,
+    predicted: Prediction,
+) -> Plan {
+    Plan {
+        tolerance: request.tolerance,
+        precision,
+        scale: weighed.scale,
+        peaks: weighed.peaks.clone(),
+        dropped: weighed.dropped,
+        predicted,
+        costs: vec![cost::estimate(&layers, precision, problem.frame(), &request.cost_model)],
+        ..Plan::by_hand(problem.clone(), layers)
+    }
+}
+
 /// The plan of one evaluator that rounding costs so much, its summed ghosts in floats of this precision.
 fn with_rounding(
     problem: &Arc<Problem>,
@@ -155,16 +176,7 @@ fn with_rounding(
         layers.push(Layer::Series(series));
         layers.extend(survey.beside.layers.iter().cloned());
     }
-    let plan = Plan {
-        tolerance: request.tolerance,
-        precision,
-        scale: weighed.scale,
-        peaks: weighed.peaks.clone(),
-        dropped: weighed.dropped,
-        predicted,
-        costs: vec![cost::estimate(&layers, precision, problem.frame(), &request.cost_model)],
-        ..Plan::by_hand(problem.clone(), layers)
-    };
+    let plan = made(problem, weighed, request, layers, precision, predicted);
     // `direct` takes eight ghosts a round where there are many, and a few rounds more to gather them.
     let rounds = match evaluator {
         Evaluator::Direct => plan.ghosts() / 7,

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::candidate::{Beside, Survey};
+use super::candidate::{Beside, Survey, made};
 use super::decay::Decay;
 use super::weigh::Weighed;
 use super::{
@@ -66,6 +66,10 @@ pub(super) fn apart(problem: &Arc<Problem>, survey: &Survey, request: &Request) 
     let bounds = direct::bounds(problem, &everywhere_weighed);
     let (precision, rounding) = bounds.within(SUMMED * request.tolerance);
     let mut beside = Beside { precision, ..Beside::default() };
+    // Eight a round where there are many, and a few rounds more to gather them.
+    if everywhere.iter().map(|group| group.ghosts).sum::<usize>() / 7 > request.loop_rounds {
+        return None;
+    }
     if !everywhere.is_empty() {
         beside.layers.push(Layer::direct(everywhere));
         beside.rounding += rounding;
@@ -75,7 +79,7 @@ pub(super) fn apart(problem: &Arc<Problem>, survey: &Survey, request: &Request) 
         let part = if series { LOCAL * request.tolerance } else { LOCAL_ALONE * left_over };
         survey.effort.spend(local::work(reaching.iter().map(|group| group.ghosts).sum())).ok()?;
         let weighed = only(&survey.weighed, &reaching);
-        let bounded = local::layer(problem, &weighed, &reaching, part).ok()?;
+        let bounded = local::layer(problem, &weighed, &reaching, part, request.loop_rounds).ok()?;
         // The first layer gives the plan its name.
         beside.layers.insert(0, Layer::Local(bounded.local));
         (beside.rounding, beside.cut) = (beside.rounding + bounded.rounding, bounded.cut);
@@ -101,16 +105,7 @@ fn sums(problem: &Arc<Problem>, survey: &Survey, beside: Beside, request: &Reque
         storage,
         ..Prediction::default()
     };
-    Plan {
-        tolerance: request.tolerance,
-        precision,
-        scale: weighed.scale,
-        peaks: weighed.peaks.clone(),
-        dropped: weighed.dropped,
-        predicted,
-        costs: vec![cost::estimate(&layers, precision, problem.frame(), &request.cost_model)],
-        ..Plan::by_hand(problem.clone(), layers)
-    }
+    made(problem, weighed, request, layers, precision, predicted)
 }
 
 /// The weights of these groups' ghosts alone.

@@ -113,3 +113,12 @@ fn layers_are_taken_where_they_are_cheaper() {
     let wide = planned(&mixed(300, 0, &Bell::Gaussian), model(5.0, 1.0), 1e-3);
     assert_eq!(kinds(&wide), [Evaluator::Grid], "{:?}", wide.costs);
 }
+
+/// A renderer that ends loops early is not asked to sum at every pixel more than it goes through.
+#[test]
+fn layers_keep_to_the_rounds_that_a_renderer_has() {
+    let ghosts = mixed(40, 400, &Bell::CosineSquared);
+    let request = Request { cost_model: model(0.2, 1e4), loop_rounds: 2, ..Request::new(1e-2) };
+    let plan = plan(&ghosts, FRAME, &request).unwrap();
+    assert!(plan.summed() <= 7 * request.loop_rounds, "{:?}", plan.costs);
+}

@@ -9,7 +9,7 @@ mod slopes;
 
 use std::sync::Arc;
 
-use super::candidate::Survey;
+use super::candidate::{Survey, made};
 use super::weigh::Weighed;
 use super::{Cost, Evaluator, Group, Layer, Plan, Precision, Prediction, Request, Transform, cost, share};
 use crate::frame::Frame;
@@ -76,6 +76,27 @@ impl Local {
     }
 }
 
+impl Local {
+    /// Whether the lists of 64-bit ghosts, eight of them a round, are what a renderer goes through and has room for.
+    ///
+    /// # Errors
+    /// [`Error::Plan`] where they are not.
+    fn has_room(&self, loop_rounds: usize) -> Result<()> {
+        if self.precision == Precision::Single {
+            return Ok(());
+        }
+        let ghosts: usize = self.groups.iter().map(|group| group.ghosts).sum();
+        if ghosts / 8 > loop_rounds {
+            return Err(Error::Plan("local would need more rounds of a loop than this renderer runs".into()));
+        }
+        let blocks = self.side() / f64::from(1u32 << block_shift(self.side())) + 1.0;
+        if ghosts as f64 * blocks * blocks > MOST_LISTED {
+            return Err(Error::Plan("local would need longer lists than it has room for".into()));
+        }
+        Ok(())
+    }
+}
+
 /// A local layer, and what it is off by at most.
 pub(super) struct Bounded {
     pub local: Local,
@@ -89,7 +110,13 @@ pub(super) struct Bounded {
 ///
 /// # Errors
 /// [`Error::ToleranceBelowFloor`] where floats cannot be as exact.
-pub(super) fn layer(problem: &Problem, weighed: &Weighed, groups: &[Group], part: f64) -> Result<Bounded> {
+pub(super) fn layer(
+    problem: &Problem,
+    weighed: &Weighed,
+    groups: &[Group],
+    part: f64,
+    loop_rounds: usize,
+) -> Result<Bounded> {
     let map = Map::new(problem, weighed, groups);
     let mut level = 0.7 * part / crowding(problem, weighed, part);
     let mut worst = map.worst(level);
@@ -125,6 +152,7 @@ pub(super) fn layer(problem: &Problem, weighed: &Weighed, groups: &[Group], part
     let rounding = worst.rounding(precision);
     let groups = groups.iter().map(|group| Group { transform: Transform::Direct, ..group.clone() }).collect();
     let local = Local { groups, level, precision, reached: worst.reached };
+    local.has_room(loop_rounds)?;
     Ok(Bounded { local, cut: worst.cut, rounding })
 }
 
@@ -136,7 +164,7 @@ pub(super) fn candidate(problem: &Arc<Problem>, survey: &Survey, request: &Reque
     let weighed = &survey.weighed;
     let left = request.tolerance - weighed.dropped_error;
     let Bounded { local, cut, rounding } =
-        layer(problem, weighed, &survey.groups, left).map_err(|error| match error {
+        layer(problem, weighed, &survey.groups, left, request.loop_rounds).map_err(|error| match error {
             Error::ToleranceBelowFloor { floor, .. } => {
                 Error::ToleranceBelowFloor { asked: request.tolerance, floor: floor / (1.0 - share::DROPPED) }
             }
@@ -146,28 +174,8 @@ pub(super) fn candidate(problem: &Arc<Problem>, survey: &Survey, request: &Reque
     let dropped = weighed.dropped_error;
     let predicted = Prediction { dropped, cut, rounding: rounding - storage, storage, ..Prediction::default() };
     let precision = local.precision;
-    // The lists of 64-bit ghosts, eight of them a round.
-    if precision == Precision::Double {
-        let kept = problem.ghosts().len() - weighed.dropped;
-        if kept / 8 > request.loop_rounds {
-            return Err(Error::Plan("local would need more rounds of a loop than this renderer runs".into()));
-        }
-        let blocks = local.side() / f64::from(1u32 << block_shift(local.side())) + 1.0;
-        if kept as f64 * blocks * blocks > MOST_LISTED {
-            return Err(Error::Plan("local would need longer lists than it has room for".into()));
-        }
-    }
     let layers = vec![Layer::Local(local)];
-    Ok(Plan {
-        tolerance: request.tolerance,
-        precision,
-        scale: weighed.scale,
-        peaks: weighed.peaks.clone(),
-        dropped: weighed.dropped,
-        predicted,
-        costs: vec![cost::estimate(&layers, precision, problem.frame(), &request.cost_model)],
-        ..Plan::by_hand(problem.clone(), layers)
-    })
+    Ok(made(problem, weighed, request, layers, precision, predicted))
 }
 
 /// About how many times the level is left out at the worst place, for a start.
