@@ -27,6 +27,12 @@
 #define bell_value profile
 #include "bells/profile.glsl"
 #undef bell_value
+#define bell_value disc
+#include "bells/disc.glsl"
+#undef bell_value
+#define bell_value bladed_disc
+#include "bells/bladed_disc.glsl"
+#undef bell_value
 
 // RUN(kind, function) for each of them, in the order of the registry.
 #define EACH_BELL(RUN) \
@@ -36,7 +42,9 @@
     RUN(3, paraboloid) \
     RUN(4, von_mises) \
     RUN(5, sine_gaussian) \
-    RUN(6, profile)
+    RUN(6, profile) \
+    RUN(7, disc) \
+    RUN(8, bladed_disc)
 
 #ifdef DOUBLE
 #define real double
@@ -58,6 +66,8 @@ real bell_value(reals offset, reals size, uint bell) {
     case 4u: return von_mises(offset, size, shape);
     case 5u: return sine_gaussian(offset, size, shape);
     case 6u: return profile(offset, size, shape);
+    case 7u: return disc(offset, size, shape);
+    case 8u: return bladed_disc(offset, size, shape);
     }
     return real(0.0);
 }

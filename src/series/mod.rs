@@ -16,6 +16,7 @@
 
 mod bell;
 mod cosine_squared;
+mod disc;
 pub mod fourier_bessel;
 mod gaussian;
 pub mod moments;
@@ -31,6 +32,7 @@ mod spline;
 mod tails;
 
 pub use bell::{Bell, Factor, Modes, Radial, Shape};
+pub use disc::{Disc, MOST_BLADES};
 pub use gaussian::{windowed_gaussian, wrapped_gaussian};
 pub use periodic::{SineGaussian, VonMises};
 pub use profile::Profile;
