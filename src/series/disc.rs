@@ -5,6 +5,8 @@
 //! polygon of the same kind that the point lies on, by the circle through its corners. No point's ρ is below its radius, so that a bound of the round disc is one
 //! of the polygon, but for the slope, which is steeper by one over the cosine of half a side.
 
+mod transform;
+
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -241,12 +243,13 @@ impl Shape for Disc {
         (2.0 * apothem * apothem + 1.0) / 12.0 * fourth / square
     }
 
+    /// A polygon's transform depends on the direction as well.
     fn modes(&self) -> Modes<'_> {
-        Modes::None
+        if self.is_round() { Modes::Radial(self) } else { Modes::None }
     }
 
     fn tabulated(&self) -> bool {
-        false
+        self.is_round()
     }
 
     /// Where it ends, one over the rim's width; of a polygon also cosine and sine of the rotation, and its sides, two a row.

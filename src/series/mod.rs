@@ -20,6 +20,7 @@ mod disc;
 pub mod fourier_bessel;
 mod gaussian;
 pub mod moments;
+mod nodes;
 pub mod numeric;
 mod parabola;
 mod paraboloid;
