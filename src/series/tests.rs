@@ -295,9 +295,7 @@ fn the_shader_with_every_bell_counts_them_as_the_registry_does() {
         let include = format!("#include \"{}\"", bell.shape().shader());
         from += any[from..].find(&include).unwrap_or_else(|| panic!("{include} in its place"));
         let name = bell.to_string().replace('-', "_");
-        for place in [format!("RUN({kind}, {name})"), format!("case {kind}u: return {name}(")] {
-            assert!(any.contains(&place), "{name} is {kind}");
-        }
+        assert!(any.contains(&format!("RUN({kind}, {name})")), "{name} is {kind}");
     }
 }
 
