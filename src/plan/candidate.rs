@@ -56,6 +56,11 @@ impl Survey {
 }
 
 impl Survey {
+    /// Ghosts that are not dropped.
+    pub fn kept(&self) -> usize {
+        self.groups.iter().map(|group| group.ghosts).sum()
+    }
+
     /// Takes note of what it costs to have each bell ready for a series, once.
     ///
     /// # Errors
@@ -139,6 +144,12 @@ pub(super) fn made(
     }
 }
 
+/// Rounds of a loop that `direct` takes for so many ghosts: eight of them a round where there are many, and a few rounds more to
+/// gather them.
+pub(super) fn rounds(ghosts: usize) -> usize {
+    ghosts / 7
+}
+
 /// The plan of one evaluator that rounding costs so much, its summed ghosts in floats of this precision.
 fn with_rounding(
     problem: &Arc<Problem>,
@@ -177,9 +188,8 @@ fn with_rounding(
         layers.extend(survey.beside.layers.iter().cloned());
     }
     let plan = made(problem, weighed, request, layers, precision, predicted);
-    // `direct` takes eight ghosts a round where there are many, and a few rounds more to gather them.
     let rounds = match evaluator {
-        Evaluator::Direct => plan.ghosts() / 7,
+        Evaluator::Direct => rounds(plan.ghosts()),
         Evaluator::Series => plan.terms() + plan.counts().len() + plan.summed(),
         Evaluator::Rows | Evaluator::Grid | Evaluator::Local => 0,
     };

@@ -279,14 +279,10 @@ pub(super) fn local<'a>(
     frame: Frame,
     model: &CostModel,
 ) -> f64 {
-    // Where there are several kinds, each listed ghost is computed as all of them.
-    const EVERY_KIND: f64 = 27.0;
     let (mut ghosts, mut bells) = (0.0, 0.0);
-    let (mut first, mut several) = (None, false);
     for group in groups {
         ghosts += group.ghosts as f64;
         bells += group.ghosts as f64 * in_gaussians(&group.bell, precision);
-        several |= *first.get_or_insert(group.bell.kind()) != group.bell.kind();
     }
     let pixels = frame.window.pixels() as f64;
     let canvas = pixels * model.canvas + 2.0 * model.pass + ghosts * model.quad;
@@ -300,8 +296,7 @@ pub(super) fn local<'a>(
             let side = (reached / ghosts).sqrt();
             let side = side + f64::from((1u32 << block_shift(side)) - 1);
             let listed = (ghosts * side * side).min(ghosts * pixels);
-            let bell = if several { EVERY_KIND } else { bells / ghosts };
-            let slower = LISTED * bell / in_gaussians(&Bell::Gaussian, precision);
+            let slower = LISTED * bells / ghosts / in_gaussians(&Bell::Gaussian, precision);
             listed * model.bell * slower + canvas
         }
     }

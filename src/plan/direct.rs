@@ -7,7 +7,9 @@ use std::ops::Range;
 use glam::DVec2;
 use rayon::prelude::*;
 
+use super::candidate::Survey;
 use super::weigh::{Weighed, along};
+use super::{Cost, Evaluator, Request, cost};
 use crate::frame::Frame;
 use crate::problem::Problem;
 use crate::scene::Ghost;
@@ -74,16 +76,16 @@ const PER_RHO: f64 = 10.0 * HALF_A_UNIT;
 /// The sine that a sine-Gaussian's mean is taken from, absolutely.
 pub(super) const SINE: f64 = 3.0 * HALF_A_UNIT;
 
-/// Ghosts that are looked at in every cell of the finer division, and in those of the coarser one.
-const FEW: usize = 4096;
-/// Cells along each side of the window.
-const CELLS: [usize; 2] = [8, 4];
+/// Cells along each side of the window, for at most so many ghosts; and for more.
+const CELLS: [(usize, usize); 3] = [(64, 32), (512, 16), (4096, 8)];
+const FEWEST_CELLS: usize = 4;
 
 /// The bounds: the worst of some cells of the window, in each of which every ghost is as far away as the cell.
 pub(super) fn bounds(problem: &Problem, weighed: &Weighed) -> Bounds {
     let (ghosts, frame) = (problem.ghosts(), problem.frame());
     let kept = weighed.weights.iter().filter(|&&weight| weight > 0.0).count();
-    let cells = Cells::new(frame, CELLS[usize::from(kept > FEW)], kept);
+    let along = CELLS.into_iter().find(|(ghosts, _)| kept <= *ghosts).map_or(FEWEST_CELLS, |(_, along)| along);
+    let cells = Cells::new(frame, along, kept);
     let chunk = ghosts.len().div_ceil(64).max(256);
     let sums: Vec<[Vec<f64>; 2]> = (0..ghosts.len().div_ceil(chunk))
         .into_par_iter()
@@ -94,6 +96,13 @@ pub(super) fn bounds(problem: &Problem, weighed: &Weighed) -> Bounds {
     };
     let additions = PER_ADDITION_DOUBLE * kept as f64;
     Bounds { single: largest(0).max(PER_WEIGHT), double: STORED + additions + largest(1) }
+}
+
+/// What the sum costs at least, before it is planned.
+pub(super) fn estimate(problem: &Problem, survey: &Survey, request: &Request) -> Cost {
+    let nanoseconds = cost::direct(&survey.groups, Precision::Single, problem.frame(), &request.cost_model);
+    let milliseconds = 1e-6 * (nanoseconds + request.cost_model.pass);
+    Cost { evaluator: Evaluator::Direct, summed: survey.kept(), reaching: 0, milliseconds }
 }
 
 /// The window in as many parts along each side.

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::candidate::{Beside, Survey, made};
+use super::candidate::{Beside, Survey, made, rounds};
 use super::decay::Decay;
 use super::weigh::Weighed;
 use super::{
@@ -66,8 +66,7 @@ pub(super) fn apart(problem: &Arc<Problem>, survey: &Survey, request: &Request) 
     let bounds = direct::bounds(problem, &everywhere_weighed);
     let (precision, rounding) = bounds.within(SUMMED * request.tolerance);
     let mut beside = Beside { precision, ..Beside::default() };
-    // Eight a round where there are many, and a few rounds more to gather them.
-    if everywhere.iter().map(|group| group.ghosts).sum::<usize>() / 7 > request.loop_rounds {
+    if rounds(everywhere.iter().map(|group| group.ghosts).sum()) > request.loop_rounds {
         return None;
     }
     if !everywhere.is_empty() {

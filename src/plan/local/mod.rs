@@ -48,6 +48,12 @@ const CLOSE: f64 = 0.4;
 const TRIES: usize = 6;
 const MOST_TRIES: usize = 40;
 
+/// And of many ghosts, which are looked at all at once as seldom as may be: first, so many of them say where to begin, a little
+/// below which it is.
+const FAR_FROM: f64 = 0.02;
+const SAMPLED: usize = 4096;
+const BELOW: f64 = 0.8;
+
 /// Ghosts that are looked at for an estimate.
 const SAMPLE: usize = 512;
 
@@ -97,6 +103,50 @@ impl Local {
     }
 }
 
+/// The highest level found that stays within the budget, and in which floats.
+struct Search {
+    found: Option<(f64, Worst)>,
+    precision: Precision,
+}
+
+impl Search {
+    /// Looks at each `step`-th of the ghosts, from this level on.
+    ///
+    /// # Errors
+    /// [`Error::ToleranceBelowFloor`] where floats cannot be as exact.
+    fn new(map: &Map<'_>, step: usize, part: f64, mut level: f64) -> Result<Self> {
+        let mut worst = map.worst(level, step);
+        let single = worst.rounding(Precision::Single) <= SINGLE * part;
+        let mut precision = if single { Precision::Single } else { Precision::Double };
+        let mut found: Option<(f64, Worst)> = None;
+        for attempt in 0..MOST_TRIES {
+            // What floats cost grows a little with the reach.
+            if precision == Precision::Single && worst.single > (1.0 - NEEDED) * part {
+                (precision, found) = (Precision::Double, None);
+            }
+            let rounding = worst.rounding(precision);
+            if rounding > (1.0 - NEEDED) * part {
+                return Err(Error::ToleranceBelowFloor { asked: part, floor: rounding / (1.0 - NEEDED) });
+            }
+            let budget = 0.98 * (part - rounding);
+            if worst.cut <= budget {
+                found = found.filter(|(highest, _)| *highest > level).or(Some((level, worst)));
+            }
+            // Each try with many ghosts costs more than it saves.
+            let close = if map.kept > SAMPLED && step == 1 { FAR_FROM } else { CLOSE };
+            let close = worst.cut <= budget && (worst.cut >= close * budget || worst.cut == 0.0 || level >= budget);
+            if close || found.is_some() && (attempt >= TRIES || worst.cut > budget) {
+                break;
+            }
+            // However many meet at a place, each leaves out no more than the level.
+            let factor = if attempt < TRIES { 0.75 * budget / worst.cut } else { 0.1 };
+            level = (level * factor).min(budget);
+            worst = map.worst(level, step);
+        }
+        Ok(Self { found, precision })
+    }
+}
+
 /// A local layer, and what it is off by at most.
 pub(super) struct Bounded {
     pub local: Local,
@@ -117,35 +167,17 @@ pub(super) fn layer(
     part: f64,
     loop_rounds: usize,
 ) -> Result<Bounded> {
+    let ghosts: usize = groups.iter().map(|group| group.ghosts).sum();
     let map = Map::new(problem, weighed, groups);
+    // A few of many ghosts say about which level it will be.
+    let step = ghosts.div_ceil(SAMPLED);
     let mut level = 0.7 * part / crowding(problem, weighed, part);
-    let mut worst = map.worst(level);
-    let single = worst.rounding(Precision::Single) <= SINGLE * part;
-    let mut precision = if single { Precision::Single } else { Precision::Double };
-    // The highest level found that stays within the budget.
-    let mut found: Option<(f64, Worst)> = None;
-    for attempt in 0..MOST_TRIES {
-        // What floats cost grows a little with the reach.
-        if precision == Precision::Single && worst.single > (1.0 - NEEDED) * part {
-            (precision, found) = (Precision::Double, None);
-        }
-        let rounding = worst.rounding(precision);
-        if rounding > (1.0 - NEEDED) * part {
-            return Err(Error::ToleranceBelowFloor { asked: part, floor: rounding / (1.0 - NEEDED) });
-        }
-        let budget = 0.98 * (part - rounding);
-        if worst.cut <= budget {
-            found = found.filter(|(highest, _)| *highest > level).or(Some((level, worst)));
-        }
-        let close = worst.cut <= budget && (worst.cut >= CLOSE * budget || worst.cut == 0.0 || level >= budget);
-        if close || found.is_some() && (attempt >= TRIES || worst.cut > budget) {
-            break;
-        }
-        // However many meet at a place, each leaves out no more than the level.
-        let factor = if attempt < TRIES { 0.75 * budget / worst.cut } else { 0.1 };
-        level = (level * factor).min(budget);
-        worst = map.worst(level);
+    if step > 1
+        && let Ok(Search { found: Some((few, _)), .. }) = Search::new(&map, step, part, level)
+    {
+        level = BELOW * few;
     }
+    let Search { found, precision } = Search::new(&map, 1, part, level)?;
     let Some((level, worst)) = found else {
         return Err(Error::Plan("local would leave out too much at any reach".into()));
     };
