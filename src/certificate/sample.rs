@@ -164,7 +164,8 @@ impl Sample {
 
     /// About so many pixels on the rings where the ghost is steep or has a kink, each with its neighbours on both sides.
     fn rings(&self, ghost: &Ghost, count: usize) -> Vec<[i32; 2]> {
-        let edges = ghost.bell.shape().edges();
+        let shape = ghost.bell.shape();
+        let edges = shape.edges();
         let each = count / (3 * edges.len().max(1));
         let mut pixels = Vec::new();
         if each == 0 {
@@ -173,7 +174,8 @@ impl Sample {
         for edge in edges {
             let ring = |k: usize| {
                 let angle = TAU * (k as f64 + 0.25) / ANGLES as f64;
-                let towards = DVec2::from_angle(angle) * ghost.size;
+                let towards = DVec2::from_angle(angle);
+                let towards = shape.outline(towards) * towards * ghost.size;
                 self.inside(ghost.center + edge * towards).map(|_| (ghost.center + edge * towards, towards))
             };
             let ring: Vec<_> = (0..ANGLES).filter_map(ring).collect();
@@ -208,7 +210,7 @@ mod tests {
     use crate::frame::Window;
     use crate::plan::{Request, plan};
     use crate::problem::Problem;
-    use crate::series::Bell;
+    use crate::series::{Bell, Disc};
 
     #[test]
     fn samples_lie_in_the_window_and_hold_its_corners() {
@@ -220,6 +222,23 @@ mod tests {
             assert!(pixels.contains(&corner), "{corner:?} of {pixels:?}");
         }
         assert!(pixels.len() >= FEWEST, "{}", pixels.len());
+    }
+
+    #[test]
+    fn the_sides_of_a_polygon_are_looked_at_from_both_sides() {
+        let frame = Frame::full(320, 180);
+        let bell = Disc::new(0.0, 3, 20.0).map(Bell::Disc).unwrap();
+        let disc = Ghost { bell, center: DVec2::new(0.3, -0.2), size: DVec2::new(0.8, 0.5), radiance: [1.0; 3] };
+        let pixels = sample_pixels(&plan(&Problem::new([disc.clone()], frame), &Request::new(1e-3)).unwrap());
+        let value = |x: f64, y: f64| disc.bell.shape().value(frame.position(x, y) - disc.center, disc.size);
+        // A neighbour is on the other side.
+        let beside = |i: f64, j: f64| {
+            let here = value(i, j);
+            [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)].iter().any(|(x, y)| value(i + x, j + y) != here)
+        };
+        let near = pixels.iter().map(|&[i, j]| (f64::from(i), f64::from(j))).filter(|&(i, j)| beside(i, j));
+        let (inside, outside): (Vec<_>, Vec<_>) = near.partition(|&(i, j)| value(i, j) == 1.0);
+        assert!(inside.len() > 60 && outside.len() > 60, "{} {}", inside.len(), outside.len());
     }
 
     #[test]

@@ -9,7 +9,7 @@ use super::series::{self, Wide};
 use super::weigh::{self, Weighed};
 use super::{Evaluator, Group, Layer, Plan, Precision, Prediction, Request, cost, direct, rounding, share, terms};
 use crate::problem::Problem;
-use crate::series::{Bell, Modes};
+use crate::series::{Distinct, Modes};
 use crate::{Error, Result};
 
 /// The part of the tolerance that a series needs for its own bounds.
@@ -69,13 +69,9 @@ impl Survey {
         if self.prepared.replace(true) {
             return Ok(());
         }
-        let mut bells: Vec<&Bell> = Vec::new();
-        for group in &self.groups {
-            if !bells.last().is_some_and(|bell| *bell == &group.bell) && !bells.contains(&&group.bell) {
-                bells.push(&group.bell);
-            }
-        }
-        let ready = bells.iter().map(|bell| match bell.shape().modes() {
+        let mut distinct = Distinct::new();
+        let bells = self.groups.iter().map(|group| &group.bell).filter(|&bell| distinct.number(bell).1);
+        let ready = bells.map(|bell| match bell.shape().modes() {
             Modes::Product(_) | Modes::None => 0.0,
             Modes::Radial(radial) => radial.preparation(),
         });

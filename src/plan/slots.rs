@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use crate::scene::Ghost;
-use crate::series::Bell;
+use crate::series::{Bell, Distinct};
 
 /// Ghosts that one task goes through. The chunks are joined in their order, so that a plan does not depend on how many
 /// cores there are.
@@ -14,7 +14,7 @@ const CHUNK: usize = 4096;
 
 /// Numbers for pairs of bell and key, in the order in which they first come.
 pub(super) struct Slots<'a, K> {
-    bells: Vec<&'a Bell>,
+    bells: Distinct<'a>,
     places: FxHashMap<(usize, K), usize>,
     /// The last pair that was asked for, and its number: often the next one too.
     last: Option<((usize, K), usize)>,
@@ -22,16 +22,12 @@ pub(super) struct Slots<'a, K> {
 
 impl<'a, K: Hash + Eq + Copy> Slots<'a, K> {
     pub fn new() -> Self {
-        Self { bells: Vec::new(), places: FxHashMap::default(), last: None }
+        Self { bells: Distinct::new(), places: FxHashMap::default(), last: None }
     }
 
     /// The pair's number, one more than the last where it is new.
     pub fn slot(&mut self, bell: &'a Bell, key: K) -> usize {
-        // There are only ever a few different bells, and most ghosts have the first.
-        let bell = self.bells.iter().position(|&other| other == bell).unwrap_or_else(|| {
-            self.bells.push(bell);
-            self.bells.len() - 1
-        });
+        let (bell, _) = self.bells.number(bell);
         let pair = (bell, key);
         if let Some((last, slot)) = self.last
             && last == pair

@@ -10,7 +10,7 @@ use crate::gpu::layout::{DirectGhost, DoubleGhost, SpectralGhost};
 use crate::plan::{self, Evaluator, Group, Layer, Local, Modes, Plan, Precision, Series, Transform};
 use crate::scene::Ghost;
 use crate::series::moments::{Cells, Point, Sums};
-use crate::series::{Bell, phase};
+use crate::series::{Bell, Distinct, phase};
 
 /// A sum of layers, one of them local, and one that is missing.
 const LAYERS: &str = "\"evaluators/layers.glsl\"";
@@ -107,19 +107,16 @@ pub(super) fn direct_ghosts<G>(
     convert: impl Fn(&Ghost, [f64; 3], u32) -> G,
 ) -> (Vec<Vec<G>>, Vec<[f64; 4]>) {
     let mut shapes = Vec::new();
-    // Where the parameters of the bells begin; there are only ever a few that have any.
-    let mut begins: Vec<(&Bell, u32)> = Vec::new();
+    // Where the parameters of the bells begin.
+    let (mut distinct, mut begins) = (Distinct::new(), Vec::new());
     let mut direct: Vec<Vec<G>> = Vec::new();
     for group in plan.summed_groups() {
-        let begin = match begins.iter().find(|(bell, _)| *bell == &group.bell) {
-            Some(&(_, begin)) => begin,
-            None => {
-                let begin = shapes.len() as u32;
-                shapes.extend(group.bell.shape().parameters());
-                begins.push((&group.bell, begin));
-                begin
-            }
-        };
+        let (number, new) = distinct.number(&group.bell);
+        if new {
+            begins.push(shapes.len() as u32);
+            shapes.extend(group.bell.shape().parameters());
+        }
+        let begin = begins[number];
         let kind = group.bell.kind() as usize;
         direct.resize_with(direct.len().max(kind + 1), Vec::new);
         direct[kind].extend(group.members.iter().map(|&index| {

@@ -11,7 +11,7 @@ use crate::gpu::local::{Drawn, Kind, Listed, LocalPass, list_step};
 use crate::gpu::runner::Runner;
 use crate::plan::{self, Area, Local, Plan, Precision};
 use crate::scene::Ghost;
-use crate::series::Bell;
+use crate::series::{Bell, Distinct};
 
 const _: () = assert!(plan::LARGEST_POINT as i32 == crate::gpu::layout::LARGEST_POINT);
 
@@ -82,7 +82,7 @@ struct Shapes {
 impl Shapes {
     fn of(plan: &Plan, local: &Local, drawn: bool) -> Self {
         let mut shapes = Self { begins: Vec::new(), rows: Vec::new(), drawn };
-        let mut begins: Vec<(&Bell, u32)> = Vec::new();
+        let (mut distinct, mut begins) = (Distinct::new(), Vec::new());
         for group in &local.groups {
             let parameters = group.bell.shape().parameters();
             if shapes.each(&group.bell) {
@@ -95,13 +95,12 @@ impl Shapes {
                 continue;
             }
             let rows = &mut shapes.rows;
-            let begin = begins.iter().find(|(bell, _)| *bell == &group.bell).map(|&(_, begin)| begin);
-            shapes.begins.push(begin.unwrap_or_else(|| {
-                let begin = rows.len() as u32;
+            let (number, new) = distinct.number(&group.bell);
+            if new {
+                begins.push(rows.len() as u32);
                 rows.extend(parameters);
-                begins.push((&group.bell, begin));
-                begin
-            }));
+            }
+            shapes.begins.push(begins[number]);
         }
         shapes
     }

@@ -134,6 +134,11 @@ pub trait Shape: Sync {
         vec![1.0, 2.5]
     }
 
+    /// How far from the centre an edge at 1 is in a direction of length 1, in sizes: 1 for what is round.
+    fn outline(&self, _towards: DVec2) -> f64 {
+        1.0
+    }
+
     /// ∫∫ over the plane; over one period, for a periodic bell.
     fn integral(&self, size: DVec2) -> f64;
 

@@ -223,16 +223,15 @@ impl Shape for Disc {
         if self.rim == 0.0 { 1.0 } else { 0.0 }
     }
 
-    /// Both ends of the rim and its middle, at the corners and in the middle of the sides.
+    /// Both ends of the rim and its middle.
     fn edges(&self) -> Vec<f64> {
-        let half = 0.5 * self.rim;
-        let mut edges = vec![1.0 - half, 1.0, 1.0 + half];
-        if let Some(polygon) = &self.polygon {
-            edges.extend([1.0 - half, 1.0, 1.0 + half].map(|edge| edge * polygon.apothem()));
-        }
-        edges.sort_unstable_by(f64::total_cmp);
+        let mut edges = vec![1.0 - 0.5 * self.rim, 1.0, 1.0 + 0.5 * self.rim];
         edges.dedup();
         edges
+    }
+
+    fn outline(&self, towards: DVec2) -> f64 {
+        1.0 / self.radius(towards)
     }
 
     fn integral(&self, size: DVec2) -> f64 {

@@ -17,6 +17,7 @@
 mod bell;
 mod cosine_squared;
 mod disc;
+mod distinct;
 pub mod fourier_bessel;
 mod gaussian;
 pub mod moments;
@@ -34,6 +35,7 @@ mod tails;
 
 pub use bell::{Bell, Factor, Modes, Radial, Shape};
 pub use disc::{Disc, MOST_BLADES};
+pub(crate) use distinct::Distinct;
 pub use gaussian::{windowed_gaussian, wrapped_gaussian};
 pub use periodic::{SineGaussian, VonMises};
 pub use profile::Profile;

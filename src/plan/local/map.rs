@@ -17,7 +17,7 @@ use crate::plan::weigh::Weighed;
 use crate::plan::{Group, Precision};
 use crate::problem::Problem;
 use crate::scene::Ghost;
-use crate::series::Bell;
+use crate::series::{Bell, Distinct};
 
 /// The sides of a ghost's cells are at most so many of its sizes, or of where it ends: from the finest to the coarsest. They are
 /// as fine as so many cells of all ghosts together allow, of a ghost that reaches as far as most do: bounds are the closer.
@@ -93,12 +93,13 @@ struct Level {
 
 impl<'a> Map<'a> {
     pub fn new(problem: &'a Problem, weighed: &'a Weighed, groups: &'a [Group]) -> Self {
-        let mut bells: Vec<Slopes<'_>> = Vec::new();
+        let (mut bells, mut distinct) = (Vec::<Slopes<'_>>::new(), Distinct::by_bounds());
         let of_group = groups.iter().map(|group| {
-            bells.iter().position(|slopes| slopes.bell == &group.bell).unwrap_or_else(|| {
+            let (number, new) = distinct.number(&group.bell);
+            if new {
                 bells.push(Slopes::new(&group.bell));
-                bells.len() - 1
-            })
+            }
+            number
         });
         let of_group = of_group.collect();
         let kept = groups.iter().map(|group| group.members.len()).sum();

@@ -21,7 +21,6 @@ pub(super) enum Kind {
 
 /// A bell along an axis.
 pub(super) struct Slopes<'a> {
-    pub bell: &'a Bell,
     pub shape: &'a dyn Shape,
     pub kind: Kind,
     pub ends: f64,
@@ -50,7 +49,7 @@ impl<'a> Slopes<'a> {
         };
         let last = if ends.is_finite() { [0.0; 2] } else { entry(ENTRIES) };
         let entries = (0..ENTRIES).map(entry).chain([last]).collect();
-        Self { bell, shape, kind, ends, jump: shape.jump(), per_offset: per_offset(bell), scale, entries }
+        Self { shape, kind, ends, jump: shape.jump(), per_offset: per_offset(bell), scale, entries }
     }
 
     /// What it is and how steep it is, at most, at a distance ≥ 0 or farther.
