@@ -23,7 +23,15 @@ layout(std140, binding = BINDING_PASS) uniform Pass {
     int columns;  // of blocks
     int shift;    // of a block's side, a power of two
     double aspect; // a pixel's width over its height
+    int width;     // of the tile
+    int pad;
 };
+#ifdef EXACT
+layout(std430, binding = BINDING_NODES) buffer Canvas {
+    uvec4 canvas_head;
+    double canvas[]; // red, green, blue: pixel by pixel
+};
+#endif
 layout(location = 0) out vec4 value;
 
 void main() {
@@ -44,5 +52,11 @@ void main() {
             blue += ghost.blue * bell;
         }
     }
+#ifdef EXACT
+    int place = 3 * (int(gl_FragCoord.y) * width + int(gl_FragCoord.x));
+    canvas[place] = red;
+    canvas[place + 1] = green;
+    canvas[place + 2] = blue;
+#endif
     value = vec4(red, green, blue, 0.0);
 }
