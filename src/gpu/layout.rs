@@ -28,6 +28,12 @@ pub(crate) const PROBES: Binding = ("BINDING_PROBES", 5);
 pub(crate) const TABLE: Binding = ("BINDING_TABLE", 6);
 pub(crate) const SHAPES: Binding = ("BINDING_SHAPES", 7);
 
+/// Of a series in 64-bit floats, which needs none of those that have these numbers meanwhile: waves along an axis; profiles or
+/// strips, or the other axis's waves; and nodes of a lattice, or the canvas of `local`.
+pub(crate) const WAVES: Binding = ("BINDING_WAVES", 4);
+pub(crate) const SUMS: Binding = ("BINDING_SUMS", 1);
+pub(crate) const NODES: Binding = ("BINDING_NODES", 6);
+
 /// Of the measurement of precision, which no other pass is bound for meanwhile.
 pub(crate) const ARGUMENTS: Binding = ("BINDING_ARGUMENTS", 0);
 pub(crate) const VALUES: Binding = ("BINDING_VALUES", 1);
@@ -65,7 +71,7 @@ pub(crate) const LAST_UNIT: u32 = CANVAS.1;
 pub(crate) const LARGEST_POINT: i32 = 64;
 
 /// Every binding, for the head of every shader.
-pub(crate) const BINDINGS: [Binding; 30] = [
+pub(crate) const BINDINGS: [Binding; 33] = [
     PASS,
     EVALUATOR,
     SAMPLES,
@@ -79,6 +85,9 @@ pub(crate) const BINDINGS: [Binding; 30] = [
     PROBES,
     TABLE,
     SHAPES,
+    WAVES,
+    SUMS,
+    NODES,
     ARGUMENTS,
     VALUES,
     PHOTO,
@@ -100,11 +109,13 @@ pub(crate) const BINDINGS: [Binding; 30] = [
 
 /// Numbers that passes and their shaders have to agree on, for the head of every shader: work groups, and what is done in
 /// one round of a loop.
-pub(crate) const NUMBERS: [Binding; 11] = [
+pub(crate) const NUMBERS: [Binding; 13] = [
     ("DIRECT_STEP", super::evaluators::STEP as u32),
     ("DIRECT_BATCH", super::evaluators::BATCH as u32),
     ("DIRECT_FEW_BYTES", super::evaluators::FEW_BYTES),
     ("DIRECT_RUNS", super::evaluators::RUNS as u32),
+    ("DOUBLE_GROUP", super::exact::GROUP),
+    ("SPLINE_ORDER", super::exact::ORDER),
     ("SPECTRUM_TILE", super::spectrum::TILE),
     ("SPECTRUM_MINE", super::spectrum::MINE),
     ("SPECTRUM_ROWS", super::spectrum::TILE / super::spectrum::MINE),
@@ -209,6 +220,8 @@ impl SummedGhost for DoubleGhost {
 pub(crate) struct Knots {
     pub start: u32,
     pub pitch: u32,
-    pub pad: [u32; 2],
+    /// Nodes that the tile has along the axis.
+    pub nodes: u32,
+    pub pad: u32,
 }
 const _: () = assert!(size_of::<Knots>() == 16);

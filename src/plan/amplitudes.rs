@@ -164,6 +164,13 @@ impl Amplitudes {
     }
 }
 
+/// The modes of groups alone, without what they add.
+pub(super) fn modes(ghosts: &[Ghost], groups: &[Group], counts: &[u32], period: DVec2, scale: Rgb) -> Vec<Mode> {
+    let sums = View { ghosts, counts, period, scale }.sums(groups);
+    let kappas = (0..).zip(counts).flat_map(|(n, &count)| (0..count).map(move |m| kappa(n, m)));
+    sums.0.iter().zip(kappas).map(|(sums, kappa)| mode(sums, kappa).0).collect()
+}
+
 /// What all tasks look at.
 struct View<'a> {
     ghosts: &'a [Ghost],

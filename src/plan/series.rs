@@ -96,6 +96,7 @@ struct Terms {
 /// What a series is planned from.
 struct Brief<'a> {
     evaluator: Evaluator,
+    precision: Precision,
     survey: &'a Survey,
     wide: Option<&'a Wide>,
     frame: Frame,
@@ -113,7 +114,7 @@ struct Brief<'a> {
 /// # Errors
 /// [`Error::Plan`] where there is no such series.
 pub(super) fn plan_series(
-    evaluator: Evaluator,
+    (evaluator, precision): (Evaluator, Precision),
     survey: &Survey,
     wide: Option<&Wide>,
     frame: Frame,
@@ -132,7 +133,7 @@ pub(super) fn plan_series(
     check::copies(period, periodisation)?;
     let predicted = Prediction { periodisation, ..predicted };
     let excess = excess(&predicted, usable);
-    let brief = Brief { evaluator, survey, wide, frame, request, period, predicted, usable, excess };
+    let brief = Brief { evaluator, precision, survey, wide, frame, request, period, predicted, usable, excess };
     if evaluator != Evaluator::Grid {
         return brief.finish(brief.terms(share::TRUNCATION)?, None);
     }
@@ -178,7 +179,7 @@ impl Brief<'_> {
         // Where the series is given there may be nothing left: then a lattice is to cost a little of what rounding does.
         let budget = interpolation * self.usable.max(if self.given() { 0.1 * self.predicted.single() } else { 0.0 });
         let over = self.request.oversampling;
-        let lattice = lattice::coarsest(degree, self.period, &marginals, self.frame, over, budget)?;
+        let lattice = lattice::coarsest(self.precision, degree, self.period, &marginals, self.frame, over, budget)?;
         self.finish(terms, Some(lattice))
     }
 
@@ -198,6 +199,8 @@ impl Brief<'_> {
         };
         let count: usize = terms.counts.iter().map(|&count| count as usize).sum();
         let most = self.request.most_terms;
+        // A term takes as much again in 64-bit floats.
+        let most = if self.precision == Precision::Double { most / 2 } else { most };
         if count > most {
             return Err(Error::Plan(format!("the series would have {count} terms, and {most} fit on the device")));
         }
@@ -212,15 +215,20 @@ impl Brief<'_> {
         let Terms { mut groups, counts, modes, strength, marginals: _, truncation } = terms;
         let interpolation = lattice.map_or(0.0, |lattice| lattice.error);
         let mut predicted = Prediction { truncation, interpolation, ..self.predicted };
-        if let Some(strength) = strength {
+        if self.precision == Precision::Single
+            && let Some(strength) = strength
+        {
             // What was planned with may have been a bound by weights.
             let degree = [counts.len() as u32 - 1, counts[0] - 1];
             let known = rounding::of_modes(self.evaluator, &strength, degree) + rounding::of_doubles(&groups, degree);
             predicted = predicted.with_single((known + self.survey.beside.rounding).min(predicted.single()));
         }
         let Request { tolerance, ref cost_model, .. } = *self.request;
-        predicted.gathering = gather::choose(&mut groups, self.period, tolerance, &predicted, cost_model);
-        let (evaluator, period) = (self.evaluator, self.period);
-        Ok((Series { evaluator, period, counts: counts.into(), groups, modes, lattice }, predicted))
+        // In 64-bit floats every ghost meets every mode.
+        if self.precision == Precision::Single {
+            predicted.gathering = gather::choose(&mut groups, self.period, tolerance, &predicted, cost_model);
+        }
+        let (evaluator, precision, period) = (self.evaluator, self.precision, self.period);
+        Ok((Series { evaluator, precision, period, counts: counts.into(), groups, modes, lattice }, predicted))
     }
 }

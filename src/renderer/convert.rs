@@ -7,35 +7,50 @@ use crate::choices::Normalize;
 use crate::gpu::composite::{Composite, Variant};
 use crate::gpu::field::Source;
 use crate::gpu::layout::{DirectGhost, DoubleGhost, SpectralGhost};
-use crate::plan::{self, Evaluator, Group, Layer, Local, Modes, Plan, Precision, Series, Transform};
+use crate::plan::{self, Evaluator, Group, Layer, Local, Mode, Modes, Plan, Precision, Series, Transform};
 use crate::scene::Ghost;
 use crate::series::moments::{Cells, Point, Sums};
 use crate::series::{Bell, phase};
 
-/// A sum of layers, one of them local, and one that is missing.
+/// A sum of layers, one of them local, and one that is missing; and the local one, in 32-bit floats and in 64.
 const LAYERS: &str = "\"evaluators/layers.glsl\"";
 const NONE: &str = "\"evaluators/none.glsl\"";
+const LOCAL: [&str; 2] = ["\"evaluators/local.glsl\"", "\"evaluators/local_double.glsl\""];
 
 /// The GLSL function that a plan's evaluator has readied, `direct` beside it where some ghosts are summed; there may be too
 /// many of them for a uniform block.
 pub(super) fn source(plan: &Plan, many_ghosts: bool) -> Source {
     let double = plan.precision == Precision::Double;
     let direct = if double { "\"evaluators/direct_double.glsl\"" } else { "\"evaluators/direct.glsl\"" };
-    let summed = |evaluator| Source { bell: Some(bell_file(plan)), many_ghosts, double, ..Source::of(evaluator) };
-    let series = plan.series().map(|series| match series.evaluator {
-        Evaluator::Series => "\"evaluators/series.glsl\"",
-        Evaluator::Rows => "\"evaluators/rows.glsl\"",
-        _ => "\"evaluators/grid.glsl\"",
-    });
+    let exact = plan.is_exact();
+    let of = |evaluator| Source { exact, ..Source::of(evaluator) };
+    let summed = |evaluator| Source { bell: Some(bell_file(plan)), many_ghosts, double, ..of(evaluator) };
+    let series = plan.series().map(series_file);
+    let local = LOCAL[usize::from(plan.local().is_some_and(|local| local.precision == Precision::Double))];
     let has_direct = plan.layers().iter().any(|layer| matches!(layer, Layer::Direct(_)));
     match (series, has_direct, plan.local().is_some()) {
-        (Some(series), false, false) => Source::of(series),
-        (Some(series), true, false) => Source { parts: Some([series, direct]), ..summed("\"evaluators/split.glsl\"") },
+        (Some(series), false, false) => of(series),
+        (Some(series), true, false) => {
+            Source { parts: Some([series, direct, NONE]), ..summed("\"evaluators/split.glsl\"") }
+        }
         (None, _, false) => summed(direct),
-        (None, false, true) => Source::of("\"evaluators/local.glsl\""),
-        (None, true, true) => Source { parts: Some([NONE, direct]), ..summed(LAYERS) },
-        (Some(series), true, true) => Source { parts: Some([series, direct]), ..summed(LAYERS) },
-        (Some(series), false, true) => Source { parts: Some([series, NONE]), ..Source::of(LAYERS) },
+        // Rounded as it is drawn.
+        (None, false, true) => Source::of(LOCAL[0]),
+        (None, true, true) => Source { parts: Some([NONE, direct, local]), ..summed(LAYERS) },
+        (Some(series), true, true) => Source { parts: Some([series, direct, local]), ..summed(LAYERS) },
+        (Some(series), false, true) => Source { parts: Some([series, NONE, local]), ..of(LAYERS) },
+    }
+}
+
+/// The GLSL function of a series.
+fn series_file(series: &Series) -> &'static str {
+    match (series.evaluator, series.precision) {
+        (Evaluator::Series, Precision::Single) => "\"evaluators/series.glsl\"",
+        (Evaluator::Rows, Precision::Single) => "\"evaluators/rows.glsl\"",
+        (_, Precision::Single) => "\"evaluators/grid.glsl\"",
+        (Evaluator::Series, Precision::Double) => "\"evaluators/series_double.glsl\"",
+        (Evaluator::Rows, Precision::Double) => "\"evaluators/rows_double.glsl\"",
+        (_, Precision::Double) => "\"evaluators/grid_double.glsl\"",
     }
 }
 
@@ -157,9 +172,12 @@ pub(super) fn table(series: &Series, group: &Group) -> Option<Vec<[f32; 4]>> {
 }
 
 /// The modes that the series keeps of those that the plan has computed, as the spectrum has them: three vec4 a mode.
-pub(super) fn terms(series: &Series, modes: &Modes) -> Vec<[f32; 4]> {
+pub(super) fn terms(plan: &Plan, series: &Series, modes: &Modes) -> Vec<[f32; 4]> {
+    let (scale, units) = (plan.scale, plan.units());
+    let ratio = [0, 1, 2].map(|colour| scale[colour] / units[colour]);
     let single = |value: f64| value.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
-    modes.kept(&series.counts).flatten().map(|term| term.map(single)).collect()
+    let turned = |mode: Mode| [0, 1, 2].map(|colour| mode[colour].map(|term| single(term * ratio[colour])));
+    modes.kept(&series.counts).flat_map(turned).collect()
 }
 
 /// The composite's uniforms.
@@ -167,7 +185,7 @@ pub(super) fn uniforms(plan: &Plan, settings: &Settings) -> Composite {
     let rgb = |v: [f64; 3], w: f64| [v[0] as f32, v[1] as f32, v[2] as f32, w as f32];
     let constant = if settings.normalize == Normalize::Minmax { [0.0; 3] } else { settings.constant };
     Composite {
-        scale: rgb(plan.scale, 0.0),
+        scale: rgb(plan.units(), 0.0),
         constant: rgb(constant, 0.0),
         light_gain: rgb(settings.light_gain, 1.0),
         luminance: rgb(settings.emission.weights.map(f64::from), settings.threshold),
@@ -178,5 +196,5 @@ pub(super) fn uniforms(plan: &Plan, settings: &Settings) -> Composite {
 }
 
 pub(super) fn weight(ghost: &Ghost, plan: &Plan) -> [f64; 3] {
-    plan::weight(ghost, plan.scale)
+    plan::weight(ghost, plan.units())
 }

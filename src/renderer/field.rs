@@ -5,6 +5,7 @@ use std::rc::Rc;
 use super::{convert, local, tiles};
 use crate::frame::{Frame, Window};
 use crate::gpu::evaluators::Evaluators;
+use crate::gpu::exact::{Exact, Waves};
 use crate::gpu::field::{FieldPass, Source};
 use crate::gpu::local::LocalPass;
 use crate::gpu::range::RangePass;
@@ -12,6 +13,7 @@ use crate::gpu::runner::Runner;
 use crate::gpu::spectrum::{Coefficients, Ghosts, Spectrum, SpectrumGroup};
 use crate::gpu::{Device, PassTime};
 use crate::plan::{Evaluator, Plan, Precision, Series, Transform};
+use crate::series::waves;
 use crate::{Error, Result};
 
 /// Holds a plan's scene on the device, and evaluates its field: all that certificates and measurements need.
@@ -19,6 +21,7 @@ pub struct Field {
     pub(super) runner: Runner,
     spectrum: Spectrum,
     evaluators: Evaluators,
+    exact: Exact,
     pub(super) values: FieldPass,
     pub(super) range: RangePass,
     local: LocalPass,
@@ -42,6 +45,7 @@ impl Field {
         Ok(Self {
             spectrum: Spectrum::new(&runner)?,
             evaluators: Evaluators::new(&runner)?,
+            exact: Exact::new(&runner)?,
             values: FieldPass::new(&runner)?,
             range: RangePass::new(&runner)?,
             local: LocalPass::new(&runner)?,
@@ -91,8 +95,12 @@ impl Field {
     }
 
     fn compute_spectrum(&mut self, plan: &Plan, series: &Series) -> Result<()> {
+        if series.precision == Precision::Double {
+            let modes = self.runner.run("modes", || plan.exact_modes());
+            return self.exact.set_spectrum(&series.counts, modes.as_flattened());
+        }
         if let Some(modes) = &series.modes {
-            let terms = self.runner.run("modes", || convert::terms(series, modes));
+            let terms = self.runner.run("modes", || convert::terms(plan, series, modes));
             return self.spectrum.upload(&series.counts, &terms);
         }
         let parts = &series.groups;
@@ -177,7 +185,7 @@ impl Field {
     /// # Errors
     /// [`Error::Gl`] where the driver refuses, or where there is no scene.
     pub fn probe(&mut self, frame: Frame, pixels: &[[i32; 2]]) -> Result<Vec<[f64; 3]>> {
-        let scale = self.plan()?.scale;
+        let scale = self.plan()?.units();
         let mut values = vec![[0.0; 3]; pixels.len()];
         for tile in self.tiles(frame.window) {
             let inside = |&[i, j]: &[i32; 2]| {
@@ -206,7 +214,7 @@ impl Field {
     /// # Errors
     /// [`Error::Gl`] where the driver refuses, or where there is no scene.
     pub fn visit(&mut self, frame: Frame, mut visit: impl FnMut(Window, &[[f64; 3]])) -> Result<()> {
-        let scale = self.plan()?.scale;
+        let scale = self.plan()?.units();
         self.held = None;
         for tile in self.tiles(frame.window) {
             let source = self.evaluate(frame, tile)?;
@@ -273,7 +281,7 @@ impl Field {
 
     /// Finds the field's range over the frame's window, and leaves it on the device.
     pub(super) fn reduce(&mut self, frame: Frame) -> Result<()> {
-        let scale = self.plan()?.scale.map(|scale| scale as f32);
+        let scale = self.plan()?.units().map(|unit| unit as f32);
         if let (true, Some((field, stamp))) = (self.held == Some(frame), self.values.drawn()) {
             if self.ranged != Some(stamp) {
                 self.range.reset();
@@ -303,12 +311,17 @@ impl Field {
                 self.localised = Some(frame);
             }
             let (corner, size) = ([tile.x, tile.y], [tile.width, tile.height]);
+            let alone = plan.layers().len() == 1;
+            self.local.set_in_doubles(local.precision == Precision::Double && !alone);
             self.local.draw(runner, convert::local_bell(local), corner, size, frame)?;
         }
         if plan.series().is_none() && plan.local().is_none() || plan.summed() > 0 {
             evaluators.direct([tile.x, tile.y], frame)?;
         }
-        if let Some(series) = plan.series() {
+        let exact = |series: &&Series| series.precision == Precision::Double;
+        if let Some(series) = plan.series().filter(exact) {
+            exactly(series, &mut self.exact, runner, frame, tile)?;
+        } else if let Some(series) = plan.series() {
             let columns = || tiles::phases(tile.width, |i| frame.x(f64::from(tile.x) + i), series.period.x);
             let rows = || tiles::phases(tile.height, |j| frame.y(f64::from(tile.y) + j), series.period.y);
             match (series.evaluator, &series.lattice) {
@@ -317,10 +330,15 @@ impl Field {
                 (Evaluator::Rows, _) => evaluators.rows(runner, [&columns(), &rows()], spectrum)?,
                 (Evaluator::Grid, Some(lattice)) => {
                     let nodes = tiles::Nodes::new(lattice, series.period, frame, tile);
-                    evaluators.grid(runner, &nodes.tile(), spectrum)?;
+                    let [columns, rows] = [nodes.phases(0), nodes.phases(1)];
+                    evaluators.grid(runner, &nodes.tile([&columns, &rows]), spectrum)?;
                 }
                 (Evaluator::Grid, None) => return Err(Error::Plan("a grid without a lattice".into())),
             }
+        }
+        if plan.local().is_some() {
+            // What a series in 64-bit floats was computed with may be bound in its place.
+            self.local.bind();
         }
         Ok(convert::source(plan, evaluators.many()))
     }
@@ -328,18 +346,47 @@ impl Field {
     /// The spectrum: for each mode that the plan keeps, harmonic by harmonic of x, A, B, C and D of red, green and blue.
     /// Of a plan without a series it means nothing.
     pub(crate) fn spectrum_terms(&self) -> Vec<[f32; 4]> {
+        let exact =
+            self.scene.as_ref().and_then(Plan::series).is_some_and(|series| series.precision == Precision::Double);
+        if exact {
+            return self.exact.spectrum().into_iter().map(|term| term.map(|value| value as f32)).collect();
+        }
         self.spectrum.read()
     }
 
     /// The constant term of the field's series, RGB: its mean over a period. None where the plan has no series.
     pub fn constant_term(&self) -> Option<[f64; 3]> {
         let plan = self.scene.as_ref().filter(|plan| plan.series().is_some())?;
-        let terms = self.spectrum.read();
-        Some([0, 1, 2].map(|colour| f64::from(terms[colour][0]) * plan.scale[colour]))
+        let (terms, units) = (self.spectrum_terms(), plan.units());
+        Some([0, 1, 2].map(|colour| f64::from(terms[colour][0]) * units[colour]))
     }
 
     /// The device that it renders on.
     pub fn device(&self) -> &Rc<Device> {
         self.runner.device()
+    }
+}
+
+/// Readies a series in 64-bit floats for a tile.
+fn exactly(series: &Series, exact: &mut Exact, runner: &Runner, frame: Frame, tile: Window) -> Result<()> {
+    let degree = series.degree();
+    if let (Evaluator::Grid, Some(lattice)) = (series.evaluator, &series.lattice) {
+        let nodes = tiles::Nodes::new(lattice, series.period, frame, tile);
+        let [columns, rows] = [0, 1].map(|axis| nodes.waves(axis, degree[axis], lattice.order));
+        return exact.grid(
+            runner,
+            [0, 1].map(|axis| Waves { positions: nodes.count(axis), values: [&columns, &rows][axis] }),
+            &nodes.exact_tile(),
+        );
+    }
+    let turns = [
+        tiles::turns(tile.width, |i| frame.x(f64::from(tile.x) + i), series.period.x),
+        tiles::turns(tile.height, |j| frame.y(f64::from(tile.y) + j), series.period.y),
+    ];
+    let [columns, rows] = [0, 1].map(|axis| waves(&turns[axis], &vec![1.0; degree[axis] as usize + 1]));
+    let both = [0, 1].map(|axis| Waves { positions: turns[axis].len(), values: [&columns, &rows][axis] });
+    match series.evaluator {
+        Evaluator::Series => exact.series(runner, both),
+        _ => exact.rows(runner, both),
     }
 }
