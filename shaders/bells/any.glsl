@@ -27,6 +27,12 @@
 #define bell_value profile
 #include "bells/profile.glsl"
 #undef bell_value
+#define bell_value disc
+#include "bells/disc.glsl"
+#undef bell_value
+#define bell_value bladed_disc
+#include "bells/bladed_disc.glsl"
+#undef bell_value
 
 // RUN(kind, function) for each of them, in the order of the registry. There is no function that chooses a ghost's bell: Mesa's
 // software renderer would compute all of them for each ghost.
@@ -37,4 +43,6 @@
     RUN(3, paraboloid) \
     RUN(4, von_mises) \
     RUN(5, sine_gaussian) \
-    RUN(6, profile)
+    RUN(6, profile) \
+    RUN(7, disc) \
+    RUN(8, bladed_disc)

@@ -25,7 +25,9 @@ macro_rules! sources {
 /// Every file of `shaders/`.
 const SOURCES: &[(&str, &str)] = &sources![
     "bells/any.glsl",
+    "bells/bladed_disc.glsl",
     "bells/cosine_squared.glsl",
+    "bells/disc.glsl",
     "bells/gaussian.glsl",
     "bells/parabola.glsl",
     "bells/paraboloid.glsl",

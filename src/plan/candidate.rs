@@ -81,7 +81,7 @@ impl Survey {
             }
         }
         let ready = bells.iter().map(|bell| match bell.shape().modes() {
-            Modes::Product(_) => 0.0,
+            Modes::Product(_) | Modes::None => 0.0,
             Modes::Radial(radial) => radial.preparation(),
         });
         self.effort.spend(ready.sum())

@@ -43,6 +43,15 @@ impl Bounds {
     }
 }
 
+/// What an offset's own rounding and that of the radius shift a bell by, for each unit of the offset.
+pub(super) fn per_offset(bell: &Bell) -> f64 {
+    match bell {
+        Bell::Profile(_) => PER_OFFSET + PER_RADIUS,
+        Bell::Disc(_) => PER_OFFSET + PER_RHO,
+        _ => PER_OFFSET,
+    }
+}
+
 /// Half a unit in the last place of an f32.
 pub(super) const HALF_A_UNIT: f64 = 0.5 * f32::EPSILON as f64;
 
@@ -65,6 +74,9 @@ const PER_POSITION: f64 = 2.0 * HALF_A_UNIT;
 pub(super) const PER_OFFSET: f64 = 3.0 * HALF_A_UNIT;
 /// The square of it as a profile's table has it, both rounded: half of that in the radius.
 const PER_RADIUS: f64 = 1.5 * HALF_A_UNIT;
+/// A disc's radius, a sum of rounded products or its root, and for a polygon two such sums, one after the other: of each unit
+/// of it.
+const PER_RHO: f64 = 10.0 * HALF_A_UNIT;
 /// The sine that a sine-Gaussian's mean is taken from, absolutely.
 pub(super) const SINE: f64 = 3.0 * HALF_A_UNIT;
 
@@ -138,7 +150,7 @@ impl Cells {
 struct Steepness<'a> {
     ghost: &'a Ghost,
     shape: &'a dyn Shape,
-    /// Whether it depends on the radius alone.
+    /// Whether it is no product, and bounded by the radius alone.
     radial: bool,
     /// Whether it is an exponential of the offset, or of a sine, as a Gaussian is, in which a rounding of the exponent counts
     /// as often as the exponent is large.
@@ -178,7 +190,7 @@ impl<'a> Steepness<'a> {
         Self {
             ghost,
             shape,
-            radial: matches!(shape.modes(), Modes::Radial(_)),
+            radial: !matches!(shape.modes(), Modes::Product(_)),
             exponential: matches!(ghost.bell, Bell::Gaussian | Bell::VonMises(_) | Bell::SineGaussian(_)),
             moved: DVec2::new(moved(ghost.center.x), moved(ghost.center.y)) / ghost.size,
             held: ghost.size.max_element() < 1.0 / f64::from(f32::MIN_POSITIVE),
@@ -240,8 +252,17 @@ impl<'a> Steepness<'a> {
     fn scaled(&self, far: f64) -> f64 {
         match &self.ghost.bell {
             Bell::VonMises(_) | Bell::SineGaussian(_) => PER_OFFSET * far,
-            Bell::Profile(_) => (PER_OFFSET + PER_RADIUS) * far.min(self.shape.ends()),
-            _ => PER_OFFSET * far.min(self.shape.ends()),
+            bell => per_offset(bell) * far.min(self.shape.ends()),
+        }
+    }
+
+    /// What f64 shifts the bell by, where offsets go as far as `far`.
+    fn shifted_double(&self, far: f64) -> f64 {
+        // The reference takes whole periods off its own way, and a rim may be steep enough to show a root's last bit.
+        match &self.ghost.bell {
+            Bell::VonMises(_) | Bell::SineGaussian(_) => 4.0 * f64::EPSILON * far + self.beside_double,
+            Bell::Disc(_) => 4.0 * f64::EPSILON * far.min(self.shape.ends()),
+            _ => 0.0,
         }
     }
 
@@ -256,12 +277,7 @@ impl<'a> Steepness<'a> {
             apart: if apart { PER_POSITION * peak * peak * (-0.5 * peak * peak).exp() } else { 0.0 },
             near: distance,
             shift,
-            // The reference takes whole periods off its own way.
-            shift_double: if self.shape.period().is_some() {
-                4.0 * f64::EPSILON * far + self.beside_double
-            } else {
-                0.0
-            },
+            shift_double: self.shifted_double(far),
             value: along(shape, distance),
             steepest: if self.radial { 0.0 } else { shape.steepest(distance) },
             exponent: if self.exponential { 0.5 * near * near } else { 0.0 },
@@ -276,16 +292,18 @@ impl<'a> Steepness<'a> {
         }
         // A profile may fall from 1 to −1.
         let most = if self.radial { 2.0 } else { 1.0 } * met;
-        let slope = |x_shift: f64, y_shift: f64| x_shift * x.steepest * y.value + y_shift * y.steepest * x.value;
+        let slope = |x_shift: f64, y_shift: f64| {
+            if self.radial {
+                // The radius is not below what both offsets make.
+                return self.shape.steepest(x.near.hypot(y.near)) * x_shift.hypot(y_shift);
+            }
+            x_shift * x.steepest * y.value + y_shift * y.steepest * x.value
+        };
         let shifted = if !self.held {
             f64::INFINITY
-        } else if self.radial {
-            // The radius is not below what both offsets make.
-            let radius = x.near.hypot(y.near);
-            let jump = if radius <= self.shape.ends() { self.shape.jump() } else { 0.0 };
-            self.shape.steepest(radius) * x.shift.hypot(y.shift) + jump
         } else {
-            slope(x.shift, y.shift)
+            let falls = self.radial && x.near.hypot(y.near) <= self.shape.ends();
+            slope(x.shift, y.shift) + if falls { self.shape.jump() } else { 0.0 }
         };
         let with_exponent = met * (1.0 + x.exponent + y.exponent);
         [

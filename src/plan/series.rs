@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::amplitudes::{self, Amplitudes};
 use super::candidate::{NEEDED, Survey};
-use super::decay::Decay;
+use super::decay::{self, Decay};
 use super::lattice::{self, Marginals};
 use super::rounding::Strength;
 use super::{
@@ -13,6 +13,7 @@ use super::{
 };
 use crate::frame::Frame;
 use crate::problem::Problem;
+use crate::series::Modes as Bells;
 use crate::{Error, Result};
 
 /// What of the tolerance may lie beyond the modes of [`Wide`].
@@ -122,6 +123,10 @@ pub(super) fn plan_series(
     predicted: Prediction,
     usable: f64,
 ) -> Result<(Series, Prediction)> {
+    // A degree that is given needs no looking at what a bell's coefficients are.
+    if let Some(group) = survey.groups.iter().find(|group| matches!(group.bell.shape().modes(), Bells::None)) {
+        return Err(decay::no_series(&group.bell));
+    }
     survey.prepare()?;
     let wide = wide.filter(|wide| wide.fits(request, usable));
     let period = match (request.period, wide) {

@@ -356,7 +356,7 @@ impl Seen<'_> {
                 let (exponent, of_offset) = match self.slopes.kind {
                     Kind::Exponential => (0.5 * near * near, 0.0),
                     Kind::Periodic => (0.0, 2.0 * PER_OFFSET),
-                    Kind::Product | Kind::Radial => (0.0, PER_OFFSET),
+                    Kind::Product | Kind::Radial => (0.0, self.slopes.per_offset),
                 };
                 here.shift = PER_OFFSET * anchor + of_offset * far + self.beside[axis];
                 // f32 may see a bell that has ended.
