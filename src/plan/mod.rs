@@ -41,7 +41,7 @@ pub use crate::choices::Evaluator;
 pub use cost::{Cost, CostModel, GRID_PASSES};
 pub use decided::Plan;
 pub use direct::Precision;
-pub use gather::Transform;
+pub use gather::{Gathering, Transform};
 pub(crate) use lattice::DOUBLE_ORDER;
 pub use lattice::{Lattice, MOST_NODES};
 pub use layer::{Layer, Series};

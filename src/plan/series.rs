@@ -27,6 +27,8 @@ pub(super) struct Wide {
     amplitudes: Amplitudes,
     /// A bound of what lies beyond the modes.
     beyond: f64,
+    /// What gathering ghosts left out.
+    gathering: f64,
 }
 
 impl Wide {
@@ -42,6 +44,8 @@ impl Wide {
         let period = request.period.unwrap_or_else(|| period::shortest(&survey.reaches, usable * share::PERIODISATION));
         let mut groups = survey.groups.clone();
         let counts = terms::fewest(&mut groups, period, usable * BEYOND, &survey.effort).ok()?;
+        let gathering =
+            gather::choose_in_doubles(&mut groups, period, share::GATHERING * request.tolerance, amplitudes::MODE);
         // By weights there may be no series at all.
         let needed = rounding > (1.0 - NEEDED) * request.tolerance;
         let afforded = survey.effort.affords(amplitudes::work(&groups, &counts));
@@ -50,7 +54,14 @@ impl Wide {
         }
         let amplitudes = Amplitudes::new(problem.ghosts(), &groups, &counts, period, survey.weighed.scale);
         let beyond = terms::error(&groups, period, &counts);
-        Some(Self { period, periodisation: period::error(&survey.reaches, period), groups, amplitudes, beyond })
+        Some(Self {
+            period,
+            periodisation: period::error(&survey.reaches, period),
+            groups,
+            amplitudes,
+            beyond,
+            gathering,
+        })
     }
 
     /// What f32 costs with all of the modes.
@@ -77,7 +88,8 @@ impl Wide {
         }
         let marginals = Marginals::of(self.amplitudes.marginals(&counts));
         let (modes, strength) = (Some(self.amplitudes.modes().clone()), Some(self.amplitudes.strength(&counts)));
-        Terms { groups, modes, strength, marginals: Some(marginals), truncation: self.beyond + left, counts }
+        let (marginals, gathering) = (Some(marginals), self.gathering);
+        Terms { groups, modes, strength, marginals, truncation: self.beyond + left, counts, gathering }
     }
 }
 
@@ -92,6 +104,8 @@ struct Terms {
     marginals: Option<Marginals>,
     /// What is left out.
     truncation: f64,
+    /// What gathering left out, where the modes were computed.
+    gathering: f64,
 }
 
 /// What a series is planned from.
@@ -199,7 +213,15 @@ impl Brief<'_> {
                     Some(degree) => terms::rectangle(&mut groups, degree),
                     None => terms::fewest(&mut groups, self.period, truncation, &self.survey.effort)?,
                 };
-                Terms { groups, counts, modes: None, strength: None, marginals: None, truncation: f64::NAN }
+                Terms {
+                    groups,
+                    counts,
+                    modes: None,
+                    strength: None,
+                    marginals: None,
+                    truncation: f64::NAN,
+                    gathering: 0.0,
+                }
             }
         };
         let count: usize = terms.counts.iter().map(|&count| count as usize).sum();
@@ -217,9 +239,9 @@ impl Brief<'_> {
 
     /// The series, with all that it adds to the error.
     fn finish(&self, terms: Terms, lattice: Option<Lattice>) -> Result<(Series, Prediction)> {
-        let Terms { mut groups, counts, modes, strength, marginals: _, truncation } = terms;
+        let Terms { mut groups, counts, modes, strength, marginals: _, truncation, gathering } = terms;
         let interpolation = lattice.map_or(0.0, |lattice| lattice.error);
-        let mut predicted = Prediction { truncation, interpolation, ..self.predicted };
+        let mut predicted = Prediction { truncation, interpolation, gathering, ..self.predicted };
         if self.precision == Precision::Single
             && let Some(strength) = strength
         {
@@ -229,8 +251,8 @@ impl Brief<'_> {
             predicted = predicted.with_single((known + self.survey.beside.rounding).min(predicted.single()));
         }
         let Request { tolerance, ref cost_model, .. } = *self.request;
-        // In 64-bit floats every ghost meets every mode.
-        if self.precision == Precision::Single {
+        // In 64-bit floats every ghost meets every mode, but for what was gathered when the modes were looked at.
+        if self.precision == Precision::Single && modes.is_none() {
             predicted.gathering = gather::choose(&mut groups, self.period, tolerance, &predicted, cost_model);
         }
         let (evaluator, precision, period) = (self.evaluator, self.precision, self.period);

@@ -234,7 +234,7 @@ impl<'a> Cutting<'a> {
             union.iter_mut().zip(needed).for_each(|(count, &needed)| *count = needed.max(*count));
             let degree = [needed.len() as u32 - 1, needed[0] - 1];
             let group = Group { degree, members: Arc::default(), ..self.groups[index].clone() };
-            spectrum += gather::cost(&group, &Transform::Dispatch, self.model);
+            spectrum += gather::likely(&group, self.model);
             costs[cut] = spectrum + cheapest_field(&union, self.period, self.frame, self.floats, self.model);
         }
         costs

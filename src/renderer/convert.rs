@@ -7,9 +7,8 @@ use crate::choices::Normalize;
 use crate::gpu::composite::{Composite, Variant};
 use crate::gpu::field::Source;
 use crate::gpu::layout::{DirectGhost, DoubleGhost, SpectralGhost};
-use crate::plan::{self, Evaluator, Group, Layer, Local, Mode, Modes, Plan, Precision, Series, Transform};
+use crate::plan::{self, Evaluator, Group, Layer, Local, Mode, Modes, Plan, Precision, Series};
 use crate::scene::Ghost;
-use crate::series::moments::{Cells, Point, Sums};
 use crate::series::{Bell, phase};
 
 /// A sum of layers, one of them local, and one that is missing; and the local one, in 32-bit floats and in 64.
@@ -105,16 +104,6 @@ pub(super) fn spectral_ghosts(plan: &Plan, period: DVec2, members: &[u32]) -> Ve
     members.iter().map(convert).collect()
 }
 
-/// The sums over the ghosts of a group, gathered from the moments of cells.
-pub(super) fn gathered(plan: &Plan, period: DVec2, group: &Group, cells: &Cells) -> Vec<Sums> {
-    let point = |k: usize| {
-        let ghost = &plan.problem().ghosts()[group.members[k] as usize];
-        let turns = ghost.center / period;
-        Point { turns: (turns - turns.floor()).to_array(), weight: weight(ghost, plan) }
-    };
-    cells.sums(group.members.len(), point, group.degree)
-}
-
 /// The ghosts that the plan sums directly, as the shader takes them, a list for each kind of bell; and the parameters of their
 /// bells.
 pub(super) fn direct_ghosts<G>(
@@ -162,13 +151,10 @@ pub(super) fn double_ghost(ghost: &Ghost, weight: [f64; 3], bell: u32) -> Double
     DoubleGhost { center: ghost.center.to_array(), size: ghost.size.to_array(), weight, bell, pad: 0 }
 }
 
-/// The coefficients that the ghosts of a group share, as the spectrum takes them; none where each has its own.
-pub(super) fn table(series: &Series, group: &Group) -> Option<Vec<[f32; 4]>> {
-    let shape = group.bell.shape();
+/// The coefficients of a group's bell at one size, as the spectrum takes them.
+pub(super) fn table(series: &Series, group: &Group, size: DVec2) -> Vec<[f32; 4]> {
     let single = |coefficient: [f64; 4]| coefficient.map(|x| x as f32);
-    let table = || shape.modes().table(&series.counts, group.smallest / series.period);
-    let tabulated = shape.tabulated() || group.transform != Transform::Dispatch;
-    tabulated.then(|| table().into_iter().map(single).collect())
+    group.bell.shape().modes().table(&series.counts, size / series.period).into_iter().map(single).collect()
 }
 
 /// The modes that the series keeps of those that the plan has computed, as the spectrum has them: three vec4 a mode.

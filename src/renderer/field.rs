@@ -10,24 +10,24 @@ use crate::gpu::field::{FieldPass, Source};
 use crate::gpu::local::LocalPass;
 use crate::gpu::range::RangePass;
 use crate::gpu::runner::Runner;
-use crate::gpu::spectrum::{Coefficients, Ghosts, Spectrum, SpectrumGroup};
+use crate::gpu::spectrum::Spectrum;
 use crate::gpu::{Device, PassTime};
-use crate::plan::{Evaluator, Plan, Precision, Series, Transform};
+use crate::plan::{Evaluator, Plan, Precision, Series};
 use crate::series::waves;
 use crate::{Error, Result};
 
 /// Holds a plan's scene on the device, and evaluates its field: all that certificates and measurements need.
 pub struct Field {
     pub(super) runner: Runner,
-    spectrum: Spectrum,
+    pub(super) spectrum: Spectrum,
     evaluators: Evaluators,
-    exact: Exact,
+    pub(super) exact: Exact,
     pub(super) values: FieldPass,
     pub(super) range: RangePass,
     local: LocalPass,
     /// The frame that the ghosts of a local layer were placed in.
     localised: Option<Frame>,
-    scene: Option<Plan>,
+    pub(super) scene: Option<Plan>,
     /// The frame whose values are held, if any.
     held: Option<Frame>,
     /// The values whose range is on the device, by what tells them from any others.
@@ -92,71 +92,6 @@ impl Field {
         let (direct, shapes) = convert::direct_ghosts(plan, convert::single_ghost);
         let single: Vec<[f32; 4]> = shapes.iter().map(|row| row.map(|x| x as f32)).collect();
         self.evaluators.set_ghosts(&self.runner, &direct, &single)
-    }
-
-    fn compute_spectrum(&mut self, plan: &Plan, series: &Series) -> Result<()> {
-        if series.precision == Precision::Double {
-            let modes = self.runner.run("modes", || plan.exact_modes());
-            return self.exact.set_spectrum(&series.counts, modes.as_flattened());
-        }
-        if let Some(modes) = &series.modes {
-            let terms = self.runner.run("modes", || convert::terms(plan, series, modes));
-            return self.spectrum.upload(&series.counts, &terms);
-        }
-        let parts = &series.groups;
-        let (mut spectral, mut sums) = (Vec::new(), Vec::new());
-        for group in parts {
-            let (each, summed) = match &group.transform {
-                Transform::Gather(cells) => {
-                    (Vec::new(), self.runner.run("moments", || convert::gathered(plan, series.period, group, cells)))
-                }
-                _ => (convert::spectral_ghosts(plan, series.period, &group.members), Vec::new()),
-            };
-            spectral.push(each);
-            sums.push(summed);
-        }
-        let tables: Vec<_> = parts.iter().map(|group| convert::table(series, group)).collect();
-        let groups = parts.iter().enumerate().map(|(k, group)| SpectrumGroup {
-            coefficients: match &tables[k] {
-                Some(table) => Coefficients::Table(table),
-                None => Coefficients::Factors(group.bell.shape().shader()),
-            },
-            ghosts: match group.transform {
-                Transform::Gather(_) => Ghosts::Sums(&sums[k]),
-                _ => Ghosts::Each(&spectral[k]),
-            },
-            degree: group.degree,
-        });
-        self.spectrum.compute(&self.runner, &series.counts, &groups.collect::<Vec<_>>())
-    }
-
-    /// Computes the spectrum of ghosts whose bell is a table, whatever bells they name: for each mode that the plan
-    /// keeps, harmonic by harmonic of x, what stands before c_n c_m, s_n s_m, c_n s_m and s_n c_m in the bell's series
-    /// about its own centre, the mode's weight 1, 2 or 4 included.
-    ///
-    /// # Errors
-    /// [`Error::Gl`] where the driver refuses.
-    pub(crate) fn set_tabulated(&mut self, plan: &Plan, table: &[[f32; 4]]) -> Result<()> {
-        self.forget_scene();
-        let everyone: Vec<u32> = (0..plan.problem().ghosts().len() as u32).collect();
-        let group = SpectrumGroup {
-            coefficients: Coefficients::Table(table),
-            ghosts: Ghosts::Each(&convert::spectral_ghosts(plan, plan.period(), &everyone)),
-            degree: plan.degree(),
-        };
-        self.spectrum.compute(&self.runner, plan.counts(), &[group])?;
-        self.runner.device().check("computing the spectrum")?;
-        self.scene = Some(plan.clone());
-        Ok(())
-    }
-
-    /// Rounds the spectrum as a store of 16-bit floats would, whose scale is its largest term: what such a store would
-    /// cost in accuracy. The next [`Field::set_scene`] of the same plan keeps it; [`Field::forget_scene`] does not.
-    ///
-    /// # Errors
-    /// [`Error::Gl`] where the driver refuses.
-    pub(crate) fn round_spectrum(&mut self) -> Result<()> {
-        self.spectrum.round_to_half()
     }
 
     /// Waits until the device has done all that it was asked to.

@@ -10,7 +10,7 @@ use crate::frame::Frame;
 use crate::gpu::Device;
 use crate::laboratory::bench::scenes::scattered;
 use crate::measure::Rounds;
-use crate::plan::{DOUBLE_ORDER, Evaluator, Lattice, Plan, Precision, Request, Transform, plan};
+use crate::plan::{DOUBLE_ORDER, Evaluator, Gathering, Lattice, Plan, Precision, Request, Transform, plan};
 use crate::problem::Problem;
 use crate::renderer::{Picture, Settings};
 use crate::scene::Ghost;
@@ -231,7 +231,7 @@ fn gathered(ghosts: &[Ghost], frame: Frame) -> Result<Plan> {
     let plan = by_hand(ghosts, frame, Evaluator::Rows, [2, 2])?;
     Ok(plan.with_series(|series| {
         for group in &mut series.groups {
-            group.transform = Transform::Gather(CELLS);
+            group.transform = Transform::Gather(Gathering { cells: CELLS, sizes: 1 });
         }
     }))
 }
