@@ -91,7 +91,7 @@ pub(super) fn choose(
     let budget = if left > 0.0 { most.min(left) } else { most };
     let part = budget / groups.len().max(1) as f64;
     let mut added = 0.0;
-    for group in groups {
+    for group in groups.iter_mut().filter(|group| group.transform == Transform::Dispatch) {
         let dispatch = cost(group, &Transform::Dispatch, model);
         if dispatch >= FEW * model.pass
             && let Some((gathering, error)) = cheaper(group, period, part, model, dispatch)

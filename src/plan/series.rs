@@ -252,8 +252,8 @@ impl Brief<'_> {
         }
         let Request { tolerance, ref cost_model, .. } = *self.request;
         // In 64-bit floats every ghost meets every mode, but for what was gathered when the modes were looked at.
-        if self.precision == Precision::Single && modes.is_none() {
-            predicted.gathering = gather::choose(&mut groups, self.period, tolerance, &predicted, cost_model);
+        if self.precision == Precision::Single {
+            predicted.gathering += gather::choose(&mut groups, self.period, tolerance, &predicted, cost_model);
         }
         let (evaluator, precision, period) = (self.evaluator, self.precision, self.period);
         Ok((Series { evaluator, precision, period, counts: counts.into(), groups, modes, lattice }, predicted))
