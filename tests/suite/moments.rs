@@ -196,7 +196,8 @@ fn a_gathered_field_is_the_dispatched_one_and_both_are_as_exact_as_predicted() {
         for evaluator in [Evaluator::Series, Evaluator::Rows, Evaluator::Grid] {
             // A periodic bell's copies, or a sharp bell's degree, may leave no plan at all.
             let request = Request { evaluator: Some(evaluator), ..Request::new(1e-3) };
-            if plan(&ghosts, FRAME, &request).is_err() {
+            // And a software renderer does not go through as many terms for each pixel.
+            if !plan(&ghosts, FRAME, &request).is_ok_and(|plan| plan.terms() < 60_000) {
                 continue;
             }
             let plans = [true, false].map(|gather| planned(&ghosts, evaluator, gather));
@@ -247,7 +248,7 @@ fn gaussians_of_mixed_sizes_are_gathered_as_those_of_a_few() {
 
 #[test]
 fn modes_of_very_many_gaussians_of_mixed_sizes_are_gathered_where_a_plan_looks_at_them() {
-    let ghosts = mixed(20_000, 0.25, 0.9);
+    let ghosts = mixed(60_000, 0.11, 0.15);
     let pixels = scenes::probes(3, &ghosts, &plan(&ghosts, FRAME, &Request::new(1e-3)).unwrap(), FRAME);
     let exact = direct_at(&ghosts, &scenes::positions(FRAME, &pixels));
     for tolerance in [1e-3, 1e-5] {
