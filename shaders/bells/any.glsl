@@ -46,11 +46,11 @@
 #define reals vec2
 #endif
 
-// For where there is no list of each kind: the kind, in the order of the registry, is in the highest 8 bits of `bell`; the
-// size as the bells take it. Mesa's software renderer computes all of them, whatever the kind.
+// For where there is no list of each kind: the kind, in the order of the registry, is in the highest bits of `bell`; the size
+// as the bells take it. Mesa's software renderer computes all of them, whatever the kind.
 real bell_value(reals offset, reals size, uint bell) {
-    uint shape = bell & 0xffffffu;
-    switch (bell >> 24) {
+    uint shape = bell & ((1u << KIND_SHIFT) - 1u);
+    switch (bell >> KIND_SHIFT) {
     case 0u: return gaussian(offset, size, shape);
     case 1u: return cosine_squared(offset, size, shape);
     case 2u: return parabola(offset, size, shape);

@@ -14,9 +14,9 @@ use crate::{Error, Result};
 /// One curve's uniforms; as in `lines.vert`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-struct Uniforms {
-    window: [f32; 4],
-    colour: [f32; 4],
+pub(super) struct Uniforms {
+    pub window: [f32; 4],
+    pub colour: [f32; 4],
 }
 const _: () = assert!(size_of::<Uniforms>() == 32);
 

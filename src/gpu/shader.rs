@@ -272,6 +272,29 @@ mod tests {
     }
 
     #[test]
+    fn every_number_that_is_defined_is_used_and_every_one_that_is_compared_with_is_defined() {
+        let words = |text: &'static str| text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+        let used: Vec<_> = SOURCES.iter().flat_map(|(_, source)| words(source)).collect();
+        // What no shader asks for, since it is what is left where nothing is done.
+        let left = ["NORMALIZE_NONE", "TONE_MAP_NONE"];
+        let defined: Vec<_> = BINDINGS.into_iter().chain(NUMBERS).map(|(name, _)| name).collect();
+        // Some are Rust's alone.
+        for name in defined.iter().filter(|name| !left.contains(name) && !name.starts_with("UNIT_WORKBENCH")) {
+            assert!(used.contains(name), "no shader uses {name}");
+        }
+        let mut compared = 0;
+        for (path, source) in SOURCES {
+            for line in source.lines().filter(|line| line.starts_with("#if ") || line.starts_with("#elif ")) {
+                if let Some((_, number)) = line.split_once(" == ") {
+                    assert!(defined.contains(&number), "{path}: {line}: is not defined, and would be 0");
+                    compared += 1;
+                }
+            }
+        }
+        assert!(compared >= 5, "{compared}");
+    }
+
+    #[test]
     fn a_file_is_included_once_and_lines_keep_their_numbers() {
         let (text, files) = assemble("field.frag", &[("EVALUATOR", "\"evaluators/rows.glsl\"")]).unwrap();
         assert_eq!(files, ["field.frag", "evaluators/rows.glsl", "shared/spectrum.glsl"]);

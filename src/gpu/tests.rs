@@ -1,16 +1,17 @@
 //! What Rust and GLSL agree on: shaders echo the structs field by field, and the harmonics are held to f64.
 
+mod uniforms;
+
 use std::f64::consts::TAU;
 use std::rc::Rc;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use bytemuck::{Pod, Zeroable as _};
 
-use super::composite::Composite;
 use super::context::{Backend, Device};
 use super::harmonics::Harmonics;
 use super::layout::{
-    Binding, DirectGhost, DoubleGhost, EVALUATOR, FEW_GHOSTS, GHOSTS, HARMONICS_X, Knots, PARTIALS, PASS, SpectralGhost,
+    Binding, DirectGhost, DoubleGhost, EVALUATOR, FEW_GHOSTS, GHOSTS, HARMONICS_X, Knots, PARTIALS, SpectralGhost,
 };
 use super::resource::Buffer;
 use super::runner::Runner;
@@ -192,29 +193,6 @@ fn shaders_read_knots_as_they_are_written() {
         words: ["knots_x", "knots_y"].map(|name| components(name, 4, false)).concat(),
     };
     on_each_backend(|device| assert_eq!(view.echo(device, &knots), [1, 2, 3, 4, 5, 6, 7, 8]));
-}
-
-#[test]
-fn shaders_read_the_uniforms_of_the_composite_as_they_are_written() {
-    let uniforms = Composite {
-        scale: [1.0, 2.0, 3.0, 4.0],
-        constant: [5.0, 6.0, 7.0, 8.0],
-        light_gain: [9.0, 10.0, 11.0, 12.0],
-        luminance: [13.0, 14.0, 15.0, 16.0],
-        strength: 17.0,
-        flat: 18.0,
-        pad: [19.0, 20.0],
-    };
-    let scalars = ["strength", "flat_span", "pad0", "pad1"].map(|name| format!("floatBitsToUint({name})"));
-    let vectors = ["scale", "constant", "light_gain", "luminance"].map(|name| components(name, 4, true));
-    let view = View {
-        declarations: vec![declaration("composite.frag", "layout(std140, binding = BINDING_PASS)")],
-        uniform: true,
-        binding: PASS,
-        words: [vectors.concat(), scalars.to_vec()].concat(),
-    };
-    let expected: Vec<u32> = (1..=20u8).map(|value| f32::from(value).to_bits()).collect();
-    on_each_backend(|device| assert_eq!(view.echo(device, &[uniforms]), expected));
 }
 
 #[test]

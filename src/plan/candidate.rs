@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::effort::Effort;
 use super::period::{self, Reach};
+use super::request::GHOSTS_A_ROUND;
 use super::series::{self, Wide};
 use super::weigh::{self, Weighed};
 use super::{Evaluator, Group, Layer, Plan, Precision, Prediction, Request, cost, direct, rounding, share, terms};
@@ -177,9 +178,9 @@ fn with_rounding(
         layers.extend(survey.beside.layers.iter().cloned());
     }
     let plan = made(problem, weighed, request, layers, precision, predicted);
-    // `direct` takes eight ghosts a round where there are many, and a few rounds more to gather them.
+    // `direct` takes several ghosts a round where there are many, and a few rounds more to gather them.
     let rounds = match evaluator {
-        Evaluator::Direct => plan.ghosts() / 7,
+        Evaluator::Direct => plan.ghosts() / (GHOSTS_A_ROUND - 1),
         Evaluator::Series => plan.terms() + plan.counts().len() + plan.summed(),
         Evaluator::Rows | Evaluator::Grid | Evaluator::Local => 0,
     };

@@ -48,6 +48,7 @@ pub use local::Local;
 pub(crate) use local::{Area, LARGEST_POINT, block_shift};
 pub use modes::{Mode, Modes};
 pub use prediction::{Prediction, Source};
+pub(crate) use request::GHOSTS_A_ROUND;
 pub use request::Request;
 pub use search::{LOOSEST, plan_at_least, plan_within};
 pub use terms::Group;

@@ -4,6 +4,9 @@ use glam::DVec2;
 
 use super::{CostModel, Evaluator};
 
+/// Ghosts that a loop over many takes in one round.
+pub(crate) const GHOSTS_A_ROUND: usize = 8;
+
 /// What is asked of the plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Request {

@@ -11,6 +11,7 @@ use glam::DVec2;
 
 use super::candidate::{Beside, Survey, made};
 use super::decay::Decay;
+use super::request::GHOSTS_A_ROUND;
 use super::weigh::Weighed;
 use super::{
     CostModel, Evaluator, Group, Layer, Plan, Precision, Prediction, Request, Transform, cost, direct, gather, local,
@@ -66,8 +67,8 @@ pub(super) fn apart(problem: &Arc<Problem>, survey: &Survey, request: &Request) 
     let bounds = direct::bounds(problem, &everywhere_weighed);
     let (precision, rounding) = bounds.within(SUMMED * request.tolerance);
     let mut beside = Beside { precision, ..Beside::default() };
-    // Eight a round where there are many, and a few rounds more to gather them.
-    if everywhere.iter().map(|group| group.ghosts).sum::<usize>() / 7 > request.loop_rounds {
+    // Several a round where there are many, and a few rounds more to gather them.
+    if everywhere.iter().map(|group| group.ghosts).sum::<usize>() / (GHOSTS_A_ROUND - 1) > request.loop_rounds {
         return None;
     }
     if !everywhere.is_empty() {

@@ -6,11 +6,17 @@ use super::settings::Settings;
 use crate::choices::Normalize;
 use crate::gpu::composite::{Composite, Variant};
 use crate::gpu::field::Source;
-use crate::gpu::layout::{DirectGhost, DoubleGhost, SpectralGhost};
+use crate::gpu::layout::{
+    Binding, DirectGhost, DoubleGhost, NORMALIZE_CLAMP, NORMALIZE_MINMAX, NORMALIZE_NONE, PROFILE_HALVINGS,
+    SpectralGhost,
+};
 use crate::plan::{self, Evaluator, Group, Layer, Local, Modes, Plan, Precision, Series, Transform};
 use crate::scene::Ghost;
 use crate::series::moments::{Cells, Point, Sums};
-use crate::series::{Bell, phase};
+use crate::series::{Bell, Profile, phase};
+
+// A profile that is not given at its centre has a row more.
+const _: () = assert!(Profile::MOST_ROWS + 1 <= 1 << PROFILE_HALVINGS);
 
 /// A sum of layers, one of them local, and one that is missing.
 const LAYERS: &str = "\"evaluators/layers.glsl\"";
@@ -66,12 +72,12 @@ pub(super) fn variant(source: Source, settings: &Settings) -> Variant {
     Variant { source, normalize: normalize(settings), take_light, straight }
 }
 
-/// How values become glare, by its number in `shared/normalized.glsl`.
-pub(super) fn normalize(settings: &Settings) -> &'static str {
+/// How values become glare.
+pub(super) fn normalize(settings: &Settings) -> Binding {
     match settings.normalize {
-        Normalize::None => "0",
-        Normalize::Clamp => "1",
-        Normalize::Minmax => "2",
+        Normalize::None => NORMALIZE_NONE,
+        Normalize::Clamp => NORMALIZE_CLAMP,
+        Normalize::Minmax => NORMALIZE_MINMAX,
     }
 }
 
@@ -179,4 +185,18 @@ pub(super) fn uniforms(plan: &Plan, settings: &Settings) -> Composite {
 
 pub(super) fn weight(ghost: &Ghost, plan: &Plan) -> [f64; 3] {
     plan::weight(ghost, plan.scale)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::evaluators::RUNS;
+    use crate::gpu::layout::KIND_SHIFT;
+
+    #[test]
+    fn every_kind_of_bell_has_its_run_and_its_bits() {
+        let last = Bell::examples().iter().map(Bell::kind).max().unwrap();
+        assert!((last as usize) + 1 < RUNS, "`direct` has no run for a bell of kind {last}");
+        assert!(last < 1 << (32 - KIND_SHIFT), "`local` has no bits for a bell of kind {last}");
+    }
 }

@@ -4,19 +4,23 @@ use glam::{DVec2, IVec2};
 use rayon::prelude::*;
 
 use super::convert::{double_ghost, weight};
-use crate::Result;
 use crate::frame::Frame;
-use crate::gpu::layout::{DoubleGhost, LocalGhost};
+use crate::gpu::layout::{DoubleGhost, KIND_SHIFT, LocalGhost};
 use crate::gpu::local::{Drawn, Kind, Listed, LocalPass};
 use crate::gpu::runner::Runner;
 use crate::plan::{self, Area, Local, Plan, Precision};
 use crate::scene::Ghost;
 use crate::series::Bell;
+use crate::{Error, Result};
 
 /// Lists are multiples of this: what a shader goes through in one round.
 const STEP: usize = crate::gpu::evaluators::STEP;
 
 const _: () = assert!(plan::LARGEST_POINT as i32 == crate::gpu::layout::LARGEST_POINT);
+const _: () = assert!(plan::GHOSTS_A_ROUND == STEP);
+
+/// The most rows of parameters that bells of several kinds may have together.
+const MOST_ROWS: usize = 1 << KIND_SHIFT;
 
 /// A ghost with what is known of it.
 struct Placed<'a> {
@@ -30,13 +34,17 @@ struct Placed<'a> {
 /// Uploads the ghosts of a plan's local layer for a frame.
 ///
 /// # Errors
-/// [`crate::Error::Gl`] where the driver refuses.
+/// [`Error::Gl`] where the driver refuses, or bells of several kinds have more parameters than there is room for.
 pub(super) fn upload(plan: &Plan, local: &Local, frame: Frame, pass: &mut LocalPass, runner: &Runner) -> Result<()> {
     let as_drawn = local.precision == Precision::Single && pass.can_draw();
     let shapes = Shapes::of(plan, local, as_drawn);
+    if shapes.several && !as_drawn && shapes.rows.len() > MOST_ROWS {
+        let rows = shapes.rows.len();
+        return Err(Error::Gl(format!("`local` cannot tell {rows} rows of bells' parameters apart, but {MOST_ROWS}")));
+    }
     let mut placed = Vec::new();
     for (group, &begin) in local.groups.iter().zip(&shapes.begins) {
-        let kind = if shapes.several && !as_drawn { group.bell.kind() << 24 } else { 0 };
+        let kind = if shapes.several && !as_drawn { group.bell.kind() << KIND_SHIFT } else { 0 };
         let one = |(place, &index): (usize, &u32)| {
             let ghost = &plan.problem().ghosts()[index as usize];
             let weight = weight(ghost, plan);

@@ -7,7 +7,7 @@ use glam::DVec2;
 
 use crate::frame::{Frame, Window};
 use crate::gpu::evaluators::LatticeTile;
-use crate::gpu::layout::Knots;
+use crate::gpu::layout::{KNOT_BITS, Knots};
 use crate::plan::Lattice;
 use crate::series::phase;
 
@@ -81,7 +81,7 @@ impl Nodes {
     }
 }
 
-/// Nodes from pixel to pixel, in 2⁻²⁰ of a node.
+/// Nodes from pixel to pixel, with [`KNOT_BITS`] bits after the point.
 #[derive(Clone, Copy)]
 struct Pitch(u64);
 
@@ -95,8 +95,7 @@ struct Span {
 }
 
 impl Pitch {
-    /// Bits after the point: the 12 before it suffice for [`crate::plan::MOST_NODES`].
-    const BITS: u32 = 20;
+    const BITS: u32 = KNOT_BITS;
 
     /// Rounded so that the nodes lie closer together than the plan wants, never farther apart.
     fn new(nodes: f64) -> Self {

@@ -14,9 +14,6 @@ use super::tails::copies;
 
 mod transform;
 
-/// Most rows of a table.
-pub const MOST_ROWS: usize = 4096;
-
 /// Radii, but for 0, in sizes: their squares, and one over these, are f32 on the GPU.
 const RADII: [f64; 2] = [1e-15, 1e15];
 
@@ -50,15 +47,19 @@ impl PartialEq for Profile {
 }
 
 impl Profile {
+    /// Most rows of a table.
+    pub const MOST_ROWS: usize = 4096;
+
     /// A profile from rows of radius and value. Where the first radius is not 0, the profile is flat up to it. The values
     /// are divided by the largest of them.
     ///
     /// # Errors
     /// What is wrong with the rows, for people: radii that do not ascend, that are beyond 1e15 or, but for 0, below 1e-15,
-    /// fewer than two rows or more than `MOST_ROWS`, numbers that are not finite, nothing but zeros.
+    /// fewer than two rows or more than [`Profile::MOST_ROWS`], numbers that are not finite, nothing but zeros.
     pub fn new(rows: &[[f64; 2]]) -> Result<Self, String> {
-        if rows.len() < 2 || rows.len() > MOST_ROWS {
-            return Err(format!("a profile has 2 to {MOST_ROWS} rows, and this one has {}", rows.len()));
+        let most = Self::MOST_ROWS;
+        if rows.len() < 2 || rows.len() > most {
+            return Err(format!("a profile has 2 to {most} rows, and this one has {}", rows.len()));
         }
         if let Some(row) = rows.iter().position(|row| !row.iter().all(|x| x.is_finite()) || row[0] < 0.0) {
             let [radius, value] = rows[row];
