@@ -15,9 +15,6 @@ use crate::{Error, Result};
 const SPARSEST: f64 = 1.02;
 const DENSEST: f64 = 64.0;
 
-/// Most nodes along an axis: places on the lattice are kept in 32 bits, 12 of them for whole nodes.
-pub const MOST_NODES: u32 = 4000;
-
 /// A lattice over the window of a picture. Node (1, 1) lies on the top left pixel; nodes count rightwards and downwards.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Lattice {
@@ -80,8 +77,8 @@ impl Marginals {
 /// The coarsest lattice whose interpolation stays within the budget, or the one of a given oversampling.
 ///
 /// # Errors
-/// [`Error::Plan`] where it would have more than [`MOST_NODES`] along an axis, or where the oversampling is too little
-/// for a spline.
+/// [`Error::Plan`] where it would have more than `most` nodes along an axis, or where the oversampling is too little for a
+/// spline.
 pub(super) fn coarsest(
     degree: [u32; 2],
     period: DVec2,
@@ -89,6 +86,7 @@ pub(super) fn coarsest(
     frame: Frame,
     oversampling: Option<f64>,
     budget: f64,
+    most: u32,
 ) -> Result<Lattice> {
     if let Some(nodes) = oversampling.filter(|nodes| !(SPARSEST..=f64::MAX).contains(nodes)) {
         return Err(Error::Plan(format!("{nodes} nodes a half wave are fewer than {SPARSEST}")));
@@ -103,13 +101,13 @@ pub(super) fn coarsest(
     };
     let (step_x, over_x) = along(0, period.x, extent.x);
     let (step_y, over_y) = along(1, period.y, extent.y);
-    let nodes = |extent: f64, step: f64| (extent / step).floor() as u32 + 4;
+    let nodes = |extent: f64, step: f64| (extent / step).floor().min(f64::from(u32::MAX - 4)) as u32 + 4;
     let step = DVec2::new(step_x, step_y);
     let nodes = [nodes(extent.x, step_x), nodes(extent.y, step_y)];
-    if nodes.iter().any(|&nodes| nodes > MOST_NODES) {
+    if nodes.iter().any(|&nodes| nodes > most) {
         let [x, y] = nodes;
         return Err(Error::Plan(format!(
-            "a lattice of {x} x {y} nodes is beyond {MOST_NODES} a side, which is what grid can index; series and rows \
+            "a lattice of {x} x {y} nodes is beyond the {most} a side that a texture of this device has; series and rows \
              need none"
         )));
     }

@@ -42,7 +42,7 @@ pub use cost::{Cost, CostModel, GRID_PASSES};
 pub use decided::Plan;
 pub use direct::Precision;
 pub use gather::Transform;
-pub use lattice::{Lattice, MOST_NODES};
+pub use lattice::Lattice;
 pub use layer::{Layer, Series};
 pub use local::Local;
 pub(crate) use local::{Area, LARGEST_POINT, block_shift};

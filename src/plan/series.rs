@@ -177,8 +177,8 @@ impl Brief<'_> {
         let marginals = marginals.unwrap_or_else(|| Marginals::by_weights(&terms.groups, degree, self.period));
         // Where the series is given there may be nothing left: then a lattice is to cost a little of what rounding does.
         let budget = interpolation * self.usable.max(if self.given() { 0.1 * self.predicted.single() } else { 0.0 });
-        let over = self.request.oversampling;
-        let lattice = lattice::coarsest(degree, self.period, &marginals, self.frame, over, budget)?;
+        let Request { oversampling, most_nodes, .. } = *self.request;
+        let lattice = lattice::coarsest(degree, self.period, &marginals, self.frame, oversampling, budget, most_nodes)?;
         self.finish(terms, Some(lattice))
     }
 

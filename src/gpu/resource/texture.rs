@@ -174,6 +174,20 @@ impl Texture {
         }
     }
 
+    /// Copies level 0 of a texture of the same kind to a place of this one, which has to hold it.
+    pub fn place(&self, from: &Self, [x, y]: [u32; 2]) {
+        assert!(self.texel == from.texel && x + from.width <= self.width && y + from.height <= self.height);
+        self.target(0);
+        let [x, y, width, height] = [x, y, from.width, from.height].map(|side| side as i32);
+        let gl = self.device.gl();
+        // SAFETY: the device keeps its context current on this thread, and the framebuffers are of textures of that device.
+        unsafe {
+            gl.bind_framebuffer(glow::READ_FRAMEBUFFER, Some(from.framebuffers[0]));
+            let (colour, filter) = (glow::COLOR_BUFFER_BIT, glow::NEAREST);
+            gl.blit_framebuffer(0, 0, width, height, x, y, x + width, y + height, colour, filter);
+        }
+    }
+
     /// Fills the top left of the texture from rows of `stride` RGBA pixels.
     pub fn write(&self, pixels: &[[f32; 4]], stride: usize, width: u32, height: u32) {
         assert!(pixels.len() >= (height as usize - 1) * stride + width as usize && width as usize <= stride);
