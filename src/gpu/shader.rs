@@ -160,8 +160,9 @@ impl Program {
     /// Runs a compute program, and makes what it stores visible to every later pass.
     pub fn dispatch(&self, groups: [u32; 3]) {
         self.bind();
-        // SAFETY: the device keeps its context current on this thread; the shader reads and writes within what is
-        // bound, as GL holds it to.
+        // SAFETY: the device keeps its context current on this thread. OpenGL 4.3 does not keep a shader from reading and
+        // writing beside what is bound; each shader stops at the counts that its pass gives it or at the buffer's own length,
+        // and each pass makes its buffers for these counts.
         unsafe {
             self.device.gl().dispatch_compute(groups[0], groups[1], groups[2]);
             self.device.gl().memory_barrier(glow::SHADER_STORAGE_BARRIER_BIT);

@@ -209,6 +209,29 @@ fn an_echo_of_other_fields_is_not_what_was_written() {
     on_each_backend(|device| assert_eq!(view.echo(device, &knots), [5, 6, 7, 8, 1, 2, 3, 4]));
 }
 
+#[test]
+fn a_thread_has_one_device_at_a_time_and_none_that_was_abandoned_is_used() {
+    let _turn = turn();
+    let run = || {
+        let first = Device::open(&[Backend::Egl]).expect("these tests need GL");
+        let refusal = Device::open(&Backend::ALL).unwrap_err().to_string();
+        assert!(refusal.contains("open on this thread already"), "{refusal}");
+        assert!(Device::try_open(Backend::OsMesa).is_err());
+        // The first is current still.
+        Buffer::from_slice(&first, &[1u32, 2]).unwrap();
+        drop(first);
+        let second = Device::open(&[Backend::Egl]).unwrap();
+        let left = Buffer::from_slice(&second, &[1u32, 2]).unwrap();
+        second.abandon();
+        assert!(second.is_lost());
+        let third = Device::open(&[Backend::OsMesa]).unwrap();
+        assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| left.read(2))).is_err());
+        drop(left);
+        assert_eq!(Buffer::from_slice(&third, &[3u32, 4]).unwrap().read(2), [3, 4]);
+    };
+    std::thread::scope(|scope| scope.spawn(run).join()).unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+}
+
 /// The largest error of cos and sin of n times each phase, against f64, of the phases as they are.
 fn harmonic_error(runner: &Runner, phases: &[u32], degree: u32, step: Option<u32>) -> f64 {
     let mut harmonics = Harmonics::new(runner, HARMONICS_X).unwrap();

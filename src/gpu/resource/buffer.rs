@@ -23,17 +23,20 @@ impl<T: Pod> Buffer<T> {
     /// A buffer for `length` elements, of no defined content. One element is kept even for none: GL has no empty block.
     pub fn new(device: &Rc<Device>, length: usize) -> Result<Self> {
         let gl = device.gl();
-        let bytes = i32::try_from(length.max(1) * size_of::<T>())
-            .map_err(|_| Error::Gl(format!("a buffer of {length} elements is beyond 2 GiB")))?;
+        let bytes = length.max(1).checked_mul(size_of::<T>()).and_then(|bytes| i32::try_from(bytes).ok());
+        let bytes = bytes.ok_or_else(|| Error::Gl(format!("a buffer of {length} elements is beyond 2 GiB")))?;
         limits::room(bytes as u64, "a buffer")?;
         // SAFETY: the device keeps its context current on this thread.
         let raw = unsafe { gl.create_buffer() }.map_err(refused("buffer"))?;
-        // SAFETY: the device keeps its context current on this thread, and the slice says how long it is.
+        let buffer = Self { device: device.clone(), raw, length, element: PhantomData };
+        // SAFETY: the device keeps its context current on this thread, and the buffer is its own.
         unsafe {
             gl.bind_buffer(glow::SHADER_STORAGE_BUFFER, Some(raw));
             gl.buffer_data_size(glow::SHADER_STORAGE_BUFFER, bytes, glow::DYNAMIC_DRAW);
         }
-        Ok(Self { device: device.clone(), raw, length, element: PhantomData })
+        // One that has no memory must not be drawn from.
+        device.check("making a buffer")?;
+        Ok(buffer)
     }
 
     /// A buffer that holds a copy of `data`.
@@ -54,7 +57,8 @@ impl<T: Pod> Buffer<T> {
 
     fn write(&self, data: &[T]) {
         let gl = self.device.gl();
-        // SAFETY: the device keeps its context current on this thread, and the slice says how long it is.
+        // SAFETY: the device keeps its context current on this thread, and the slice says how long it is; GL refuses one that
+        // is longer than the buffer.
         unsafe {
             gl.bind_buffer(glow::SHADER_STORAGE_BUFFER, Some(self.raw));
             gl.buffer_sub_data_u8_slice(glow::SHADER_STORAGE_BUFFER, 0, bytemuck::cast_slice(data));
@@ -88,7 +92,8 @@ impl<T: Pod> Buffer<T> {
     /// Makes the buffer the vertex attribute `location` of the current vertex array: f32s, as many as a `T` holds.
     pub fn bind_vertices(&self, location: u32) {
         let (gl, floats) = (self.device.gl(), size_of::<T>() / size_of::<f32>());
-        // SAFETY: the device keeps its context current on this thread, and the offset is into the buffer that is bound.
+        // SAFETY: the device keeps its context current on this thread; the buffer that is bound has these floats one after the
+        // other, from offset 0 on.
         unsafe {
             gl.bind_buffer(glow::ARRAY_BUFFER, Some(self.raw));
             gl.enable_vertex_attrib_array(location);
@@ -99,7 +104,10 @@ impl<T: Pod> Buffer<T> {
     /// Makes its elements the attributes of the current vertex array, one after `divisor` instances or, with 0, one a vertex.
     pub(in crate::gpu) fn bind_attributes(&self, attributes: &[Attribute], divisor: u32) {
         let (gl, stride) = (self.device.gl(), size_of::<T>() as i32);
-        // SAFETY: the device keeps its context current on this thread, and the offsets are into the buffer that is bound.
+        let ends = attributes.iter().map(|attribute| (attribute.first + attribute.count) * size_of::<f32>() as i32);
+        assert!(ends.max().unwrap_or(0) <= stride, "attributes are words of an element");
+        // SAFETY: the device keeps its context current on this thread, and the offsets are into each element of the buffer that
+        // is bound, as was asserted.
         unsafe {
             gl.bind_buffer(glow::ARRAY_BUFFER, Some(self.raw));
             for &Attribute { location, kind, count, first } in attributes {

@@ -156,7 +156,7 @@ impl Texture {
     /// Sets every channel of level 0 to one value.
     pub fn clear(&self, value: f32) {
         self.target(0);
-        // SAFETY: the device keeps its context current on this thread, and numbers are all that it is given.
+        // SAFETY: the device keeps its context current on this thread, and a colour has four numbers.
         unsafe { self.device.gl().clear_buffer_f32_slice(glow::COLOR, 0, &[value; 4]) }
     }
 
@@ -192,7 +192,8 @@ impl Texture {
     pub fn write(&self, pixels: &[[f32; 4]], stride: usize, width: u32, height: u32) {
         assert!(pixels.len() >= (height as usize - 1) * stride + width as usize && width as usize <= stride);
         let gl = self.device.gl();
-        // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
+        // SAFETY: the device keeps its context current on this thread, no buffer is bound to read from, and the slice holds all
+        // rows, as was asserted.
         unsafe {
             gl.bind_buffer(glow::PIXEL_UNPACK_BUFFER, None);
             gl.pixel_store_i32(glow::UNPACK_ROW_LENGTH, stride as i32);
@@ -221,7 +222,8 @@ impl Texture {
         assert_eq!(self.texel, Texel::Rgba);
         assert!(pixels.len() >= (height as usize - 1) * stride + width as usize && width as usize <= stride);
         let gl = self.device.gl();
-        // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
+        // SAFETY: the device keeps its context current on this thread, no buffer is bound to read into, and the slice has room
+        // for all rows, as was asserted.
         unsafe {
             gl.bind_buffer(glow::PIXEL_PACK_BUFFER, None);
             gl.pixel_store_i32(glow::PACK_ROW_LENGTH, stride as i32);
