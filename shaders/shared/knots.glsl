@@ -10,7 +10,7 @@ struct Knot {
 
 // Numbers with KNOT_BITS bits after the point.
 layout(std140, binding = BINDING_EVALUATOR) uniform Knots {
-    uvec4 knots_x; // where the first pixel lies, and from each to the next; z and w unused
+    uvec4 knots_x; // where the first pixel lies, from each to the next, and how many nodes there are; w unused
     uvec4 knots_y;
 };
 

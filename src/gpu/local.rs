@@ -7,7 +7,8 @@ use glow::HasContext as _;
 
 use super::context::Device;
 use super::evaluators::{STEP, Words, within_rounds};
-use super::layout::{CANVAS, DoubleGhost, GHOSTS, LARGEST_POINT, LocalGhost, PARTIALS, PASS, SHAPES};
+use super::exact::room;
+use super::layout::{CANVAS, DoubleGhost, GHOSTS, LARGEST_POINT, LocalGhost, NODES, PARTIALS, PASS, SHAPES};
 use super::resource::{Attribute, Buffer, Scratch, Texel, Texture};
 use super::runner::Runner;
 use crate::frame::Frame;
@@ -45,21 +46,32 @@ pub(crate) struct Kind {
     pub quads: Range<usize>,
 }
 
-/// Ghosts in 64-bit floats, and for each block of pixels, row by row, where its list begins among the numbers that follow; and
-/// the last of the ghosts is none at all.
+/// Ghosts in 64-bit floats, the last of which is none at all, and lists of them: for each kind of bell, where there are several,
+/// and each block of pixels, row by row, where its list begins among these numbers; where the last one ends; then the lists, of
+/// multiples of [`list_step`].
 pub(crate) struct Listed<'a> {
     pub ghosts: &'a [DoubleGhost],
     pub lists: &'a [u32],
+    pub kinds: u32,
     pub blocks: [u32; 2],
     /// A block's side is this power of two.
     pub shift: u32,
+    /// The most ghosts that any block has, of all kinds together.
+    pub longest: usize,
+}
+
+/// Ghosts that are summed in one round of a loop: no more than one, since what fills a list up costs as much as a ghost, but where
+/// a block has so many that a software renderer would not go through as many rounds.
+pub(crate) fn list_step(longest: usize) -> usize {
+    const MANY: usize = 1 << 15;
+    if longest > MANY { STEP } else { 1 }
 }
 
 /// What is on the device of either.
 enum Scene {
     Nothing,
     Drawn(Vec<Batches>),
-    Listed { columns: u32, shift: u32, bands: u32 },
+    Listed { columns: u32, blocks: u32, shift: u32, step: usize, bands: u32 },
 }
 
 /// The ghosts of one kind of bell as so many draws.
@@ -78,6 +90,10 @@ pub(crate) struct LocalPass {
     shapes: Buffer<Words>,
     tile: Buffer<[i32; 12]>,
     canvas: Scratch,
+    /// The canvas of listed ghosts that are one layer of some: its head, then pixels of three doubles, two doubles an element.
+    exact: Buffer<[f64; 2]>,
+    /// Whether that is where it is read.
+    in_doubles: bool,
     scene: Scene,
     /// Whether points are as large as they may be asked to.
     points: bool,
@@ -104,6 +120,8 @@ impl LocalPass {
             shapes: Buffer::new(device, 0)?,
             tile: Buffer::new(device, 1)?,
             canvas: Scratch::default(),
+            exact: Buffer::new(device, 1)?,
+            in_doubles: false,
             scene: Scene::Nothing,
             blends: [glow::FULL_SUPPORT, glow::CAVEAT_SUPPORT].contains(&(support[0] as u32)),
             points: sizes[1] >= LARGEST_POINT as f32,
@@ -134,15 +152,15 @@ impl LocalPass {
     /// # Errors
     /// [`Error::Gl`] where the driver refuses, or a list is longer than the software renderer goes through for one pixel.
     pub fn set_listed(&mut self, runner: &Runner, listed: &Listed<'_>, shapes: &[[f64; 4]]) -> Result<()> {
-        let [columns, rows] = listed.blocks;
-        let starts = &listed.lists[..=(columns * rows) as usize];
-        let longest = starts.windows(2).map(|pair| (pair[1] - pair[0]) as usize).max().unwrap_or(0);
-        within_rounds(runner, longest / STEP, "local", longest, "ghosts")?;
+        let &Listed { kinds, blocks: [columns, rows], shift, longest, .. } = listed;
+        let (blocks, step) = (columns * rows, list_step(longest));
+        within_rounds(runner, longest / step + kinds as usize, "local", longest, "ghosts")?;
         self.doubles.store(listed.ghosts)?;
         self.lists.store(listed.lists)?;
         self.shapes.store(bytemuck::cast_slice(shapes))?;
-        let bells = f64::from(1u32 << (2 * listed.shift)) * (listed.lists.len() - starts.len()) as f64;
-        self.scene = Scene::Listed { columns, shift: listed.shift, bands: (bells / MOST_LISTED).ceil() as u32 };
+        let places = listed.lists.len() - (kinds * blocks) as usize;
+        let bands = (f64::from(1u32 << (2 * shift)) * places as f64 / MOST_LISTED).ceil() as u32;
+        self.scene = Scene::Listed { columns, blocks, shift, step, bands };
         Ok(())
     }
 
@@ -180,25 +198,43 @@ impl LocalPass {
                     one(bell, quads, false)?;
                 }
             }
-            &Scene::Listed { columns, shift, bands } => {
+            &Scene::Listed { columns, blocks, shift, step, bands } => {
                 let (window, aspect) = (frame.window, frame.pixel_aspect.to_bits());
                 let [low, high] = [aspect as u32 as i32, (aspect >> 32) as i32];
                 let [x, y] = corner;
                 let size = [frame.width as i32, frame.height as i32];
-                let words = [x, y, size[0], size[1], window.x, window.y, columns as i32, shift as i32, low, high, 0, 0];
+                let [columns, blocks, shift, wide] = [columns, blocks, shift, width].map(|number| number as i32);
+                let words = [x, y, size[0], size[1], window.x, window.y, columns, blocks, shift, wide, low, high];
                 self.tile.store(&[words])?;
                 self.doubles.bind_storage(GHOSTS);
                 self.lists.bind_storage(PARTIALS);
-                runner.draw_in_bands(
-                    "local_lists.frag",
-                    &[("BELL", bell), ("DOUBLE", "1")],
-                    canvas,
-                    bands.min(height),
-                )?;
+                let step = format!("{step}u");
+                let mut defines = vec![("BELL", bell), ("DOUBLE", "1"), ("LIST_STEP", &step)];
+                if self.in_doubles {
+                    let pixels = width as usize * height as usize;
+                    room(runner, &mut self.exact, 1 + (3 * pixels).div_ceil(2))?;
+                    self.exact.store(&[[f64::from_bits(u64::from(width)), 0.0]])?;
+                    self.exact.bind_storage(NODES);
+                    defines.push(("EXACT", "1"));
+                }
+                runner.draw_in_bands("local_lists.frag", &defines, canvas, bands.min(height))?;
+                runner.written();
             }
         }
         canvas.bind(CANVAS);
         Ok(())
+    }
+
+    /// Whether listed ghosts are one layer of some, and their canvas is to be one of doubles.
+    pub fn set_in_doubles(&mut self, in_doubles: bool) {
+        self.in_doubles = in_doubles;
+    }
+
+    /// Binds a canvas of doubles as it was drawn last.
+    pub fn bind(&self) {
+        if self.in_doubles {
+            self.exact.bind_storage(NODES);
+        }
     }
 }
 

@@ -9,6 +9,7 @@
 //! | `runner`, `timer` | runs passes and times them |
 //! | `spectrum` | ghosts → A, B, C, D |
 //! | `harmonics`, `evaluators` | spectrum → the function `glare(pixel)` of each evaluator |
+//! | `exact` | the same in 64-bit floats, for a series |
 //! | `field`, `range`, `composite` | that function → the field, its range, the picture |
 //! | `local` | ghosts drawn where they reach → the canvas that `local`'s function reads |
 //! | `graf` | bells on a disc → their Bessel spectrum → the function `glare(pixel)` of Graf's theorem |
@@ -29,6 +30,7 @@ pub(crate) mod composite;
 mod context;
 pub(crate) mod copy;
 pub(crate) mod evaluators;
+pub(crate) mod exact;
 pub(crate) mod field;
 pub(crate) mod graf;
 mod harmonics;

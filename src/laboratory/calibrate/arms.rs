@@ -10,9 +10,10 @@ use crate::frame::Frame;
 use crate::gpu::Device;
 use crate::laboratory::bench::scenes::{by, by_hand, scattered};
 use crate::measure::Rounds;
-use crate::plan::{Evaluator, Lattice, Plan, Transform};
+use crate::plan::{DOUBLE_ORDER, Evaluator, Gathering, Lattice, Plan, Precision, Transform};
 use crate::renderer::{Picture, Settings};
 use crate::scene::Ghost;
+use crate::series::CUBIC;
 use crate::series::moments::Cells;
 
 /// Milliseconds that a timing should take at least: so much that the clock and the waiting do not count.
@@ -75,6 +76,10 @@ pub(super) mod place {
     pub const TINY: usize = 16;
     /// A few small ghosts; many; a few large ones; a few small ones on a wide picture.
     pub const LOCAL: [usize; 4] = [17, 18, 19, 20];
+    /// As `SERIES`, `ROWS` and `GRID`, in 64-bit floats.
+    pub const SERIES_DOUBLE: [usize; 2] = [21, 22];
+    pub const ROWS_DOUBLE: [usize; 3] = [23, 24, 25];
+    pub const GRID_DOUBLE: [usize; 3] = [26, 27, 28];
 }
 
 /// The narrow picture, the wide one and the tiny one, in pixels: a graphics card needs more to do.
@@ -128,6 +133,14 @@ impl Arms {
             sized(Work::Everything, 0, 3000, SMALL, &local),
             sized(Work::Everything, 0, 60, 0.3, &local),
             sized(Work::Everything, 1, 60, SMALL, &local),
+            arm(Work::Frame, 0, 4, &|ghosts, frame| Ok(in_doubles(series(2)(ghosts, frame)?))),
+            arm(Work::Frame, 0, 4, &|ghosts, frame| Ok(in_doubles(series(7)(ghosts, frame)?))),
+            arm(Work::Frame, 0, 4, &|ghosts, frame| Ok(in_doubles(rows([10, 10])(ghosts, frame)?))),
+            arm(Work::Frame, 0, 4, &|ghosts, frame| Ok(in_doubles(rows([10, 800])(ghosts, frame)?))),
+            arm(Work::Frame, 0, 4, &|ghosts, frame| Ok(in_doubles(rows([60, 10])(ghosts, frame)?))),
+            arm(Work::Frame, 0, 4, &|ghosts, frame| Ok(in_doubles(grid(ghosts, frame, 20)?))),
+            arm(Work::Frame, 0, 4, &|ghosts, frame| Ok(in_doubles(grid(ghosts, frame, 420)?))),
+            arm(Work::Frame, 1, 4, &|ghosts, frame| Ok(in_doubles(grid(ghosts, frame, 20)?))),
         ]
         .into_iter()
         .collect();
@@ -184,12 +197,22 @@ impl Arms {
 /// Small ghosts: of a pixel or two.
 const SMALL: f64 = 0.01;
 
+/// The same plan, its series in 64-bit floats.
+fn in_doubles(plan: Plan) -> Plan {
+    plan.with_series(|series| {
+        series.precision = Precision::Double;
+        if let Some(lattice) = &mut series.lattice {
+            lattice.order = DOUBLE_ORDER;
+        }
+    })
+}
+
 /// A few modes, gathered from cells of many moments. Sizes differ, and the error does not matter here.
 fn gathered(ghosts: &[Ghost], frame: Frame) -> Result<Plan> {
     let plan = by_hand(Evaluator::Rows, ghosts, frame, [2, 2])?;
     Ok(plan.with_series(|series| {
         for group in &mut series.groups {
-            group.transform = Transform::Gather(CELLS);
+            group.transform = Transform::Gather(Gathering { cells: CELLS, sizes: 1 });
         }
     }))
 }
@@ -210,6 +233,7 @@ fn grid(ghosts: &[Ghost], frame: Frame, columns: u32) -> Result<Plan> {
     let (low, high) = frame.bounds();
     let cells = [columns, LINES].map(|nodes| f64::from(nodes - BEYOND) + 0.5);
     let step = (high - low) / DVec2::from(cells);
-    let lattice = Lattice { step, nodes: [columns, LINES], oversampling: DVec2::ONE, error: f64::INFINITY };
+    let lattice =
+        Lattice { order: CUBIC, step, nodes: [columns, LINES], oversampling: DVec2::ONE, error: f64::INFINITY };
     Ok(plan.with_series(|series| series.lattice = Some(lattice)))
 }

@@ -10,6 +10,7 @@ mod slopes;
 use std::sync::Arc;
 
 use super::candidate::{Survey, made};
+use super::direct::{HALF_A_UNIT, STORED};
 use super::request::GHOSTS_A_ROUND;
 use super::weigh::Weighed;
 use super::{Cost, Evaluator, Group, Layer, Plan, Precision, Prediction, Request, Transform, cost, share};
@@ -41,13 +42,16 @@ const NEEDED: f64 = 0.1;
 /// floats cost some times as much.
 const SINGLE: f64 = 0.8;
 
-/// Half a unit of the canvas, which is one of f32 whatever the floats are.
-const CANVAS: f64 = 0.5 * f32::EPSILON as f64;
-
 /// How near to its budget what is left out should come, and how often that is tried.
 const CLOSE: f64 = 0.4;
 const TRIES: usize = 6;
 const MOST_TRIES: usize = 40;
+
+/// And of many ghosts, which are looked at all at once as seldom as may be: first, so many of them say where to begin, a little
+/// below which it is.
+const FAR_FROM: f64 = 0.02;
+const SAMPLED: usize = 4096;
+const BELOW: f64 = 0.8;
 
 /// Ghosts that are looked at for an estimate.
 const SAMPLE: usize = 512;
@@ -98,6 +102,64 @@ impl Local {
     }
 }
 
+/// What floats cost, where storing what 64 bits give in 32 costs so much.
+fn floats(worst: &Worst, precision: Precision, stored: f64) -> f64 {
+    match precision {
+        Precision::Single => worst.rounding(precision),
+        Precision::Double => stored + worst.rounding(precision),
+    }
+}
+
+/// The highest level found that stays within the budget, and in which floats.
+struct Search {
+    found: Option<(f64, Worst)>,
+    precision: Precision,
+}
+
+impl Search {
+    /// Looks at each `step`-th of the ghosts, from this level on: in floats that are given, or in 32 bits where these can.
+    ///
+    /// # Errors
+    /// [`Error::ToleranceBelowFloor`] where floats cannot be as exact.
+    fn new(
+        map: &Map<'_>,
+        step: usize,
+        (part, stored): (f64, f64),
+        given: Option<Precision>,
+        mut level: f64,
+    ) -> Result<Self> {
+        let mut worst = map.worst(level, step);
+        let single = worst.rounding(Precision::Single) <= SINGLE * part;
+        let mut precision = given.unwrap_or(if single { Precision::Single } else { Precision::Double });
+        let mut found: Option<(f64, Worst)> = None;
+        for attempt in 0..MOST_TRIES {
+            // What floats cost grows a little with the reach.
+            if given.is_none() && precision == Precision::Single && worst.single > (1.0 - NEEDED) * part {
+                (precision, found) = (Precision::Double, None);
+            }
+            let rounding = floats(&worst, precision, stored);
+            if rounding > (1.0 - NEEDED) * part {
+                return Err(Error::ToleranceBelowFloor { asked: part, floor: rounding / (1.0 - NEEDED) });
+            }
+            let budget = 0.98 * (part - rounding);
+            if worst.cut <= budget {
+                found = found.filter(|(highest, _)| *highest > level).or(Some((level, worst)));
+            }
+            // Each try with many ghosts costs more than it saves.
+            let close = if map.kept > SAMPLED && step == 1 { FAR_FROM } else { CLOSE };
+            let close = worst.cut <= budget && (worst.cut >= close * budget || worst.cut == 0.0 || level >= budget);
+            if close || found.is_some() && (attempt >= TRIES || worst.cut > budget) {
+                break;
+            }
+            // However many meet at a place, each leaves out no more than the level.
+            let factor = if attempt < TRIES { 0.75 * budget / worst.cut } else { 0.1 };
+            level = (level * factor).min(budget);
+            worst = map.worst(level, step);
+        }
+        Ok(Self { found, precision })
+    }
+}
+
 /// A local layer, and what it is off by at most.
 pub(super) struct Bounded {
     pub local: Local,
@@ -107,7 +169,8 @@ pub(super) struct Bounded {
     pub rounding: f64,
 }
 
-/// A local layer of groups, which stays within a part of the tolerance.
+/// A local layer of groups, which stays within a part of the tolerance: in 32-bit floats where these can, or in floats that are
+/// given. Of the part, so much is taken where 64 bits are stored in 32.
 ///
 /// # Errors
 /// [`Error::ToleranceBelowFloor`] where floats cannot be as exact.
@@ -115,42 +178,25 @@ pub(super) fn layer(
     problem: &Problem,
     weighed: &Weighed,
     groups: &[Group],
-    part: f64,
+    (part, stored): (f64, f64),
+    given: Option<Precision>,
     loop_rounds: usize,
 ) -> Result<Bounded> {
+    let ghosts: usize = groups.iter().map(|group| group.ghosts).sum();
     let map = Map::new(problem, weighed, groups);
+    // A few of many ghosts say about which level it will be.
+    let step = ghosts.div_ceil(SAMPLED);
     let mut level = 0.7 * part / crowding(problem, weighed, part);
-    let mut worst = map.worst(level);
-    let single = worst.rounding(Precision::Single) <= SINGLE * part;
-    let mut precision = if single { Precision::Single } else { Precision::Double };
-    // The highest level found that stays within the budget.
-    let mut found: Option<(f64, Worst)> = None;
-    for attempt in 0..MOST_TRIES {
-        // What floats cost grows a little with the reach.
-        if precision == Precision::Single && worst.single > (1.0 - NEEDED) * part {
-            (precision, found) = (Precision::Double, None);
-        }
-        let rounding = worst.rounding(precision);
-        if rounding > (1.0 - NEEDED) * part {
-            return Err(Error::ToleranceBelowFloor { asked: part, floor: rounding / (1.0 - NEEDED) });
-        }
-        let budget = 0.98 * (part - rounding);
-        if worst.cut <= budget {
-            found = found.filter(|(highest, _)| *highest > level).or(Some((level, worst)));
-        }
-        let close = worst.cut <= budget && (worst.cut >= CLOSE * budget || worst.cut == 0.0 || level >= budget);
-        if close || found.is_some() && (attempt >= TRIES || worst.cut > budget) {
-            break;
-        }
-        // However many meet at a place, each leaves out no more than the level.
-        let factor = if attempt < TRIES { 0.75 * budget / worst.cut } else { 0.1 };
-        level = (level * factor).min(budget);
-        worst = map.worst(level);
+    if step > 1
+        && let Ok(Search { found: Some((few, _)), .. }) = Search::new(&map, step, (part, stored), given, level)
+    {
+        level = BELOW * few;
     }
+    let Search { found, precision } = Search::new(&map, 1, (part, stored), given, level)?;
     let Some((level, worst)) = found else {
         return Err(Error::Plan("local would leave out too much at any reach".into()));
     };
-    let rounding = worst.rounding(precision);
+    let rounding = floats(&worst, precision, stored);
     let groups = groups.iter().map(|group| Group { transform: Transform::Direct, ..group.clone() }).collect();
     let local = Local { groups, level, precision, reached: worst.reached };
     local.has_room(loop_rounds)?;
@@ -165,13 +211,19 @@ pub(super) fn candidate(problem: &Arc<Problem>, survey: &Survey, request: &Reque
     let weighed = &survey.weighed;
     let left = request.tolerance - weighed.dropped_error;
     let Bounded { local, cut, rounding } =
-        layer(problem, weighed, &survey.groups, left, request.loop_rounds).map_err(|error| match error {
-            Error::ToleranceBelowFloor { floor, .. } => {
-                Error::ToleranceBelowFloor { asked: request.tolerance, floor: floor / (1.0 - share::DROPPED) }
-            }
-            error => error,
-        })?;
-    let storage = CANVAS.min(rounding);
+        layer(problem, weighed, &survey.groups, (left, STORED), None, request.loop_rounds).map_err(
+            |error| match error {
+                Error::ToleranceBelowFloor { floor, .. } => {
+                    Error::ToleranceBelowFloor { asked: request.tolerance, floor: floor / (1.0 - share::DROPPED) }
+                }
+                error => error,
+            },
+        )?;
+    let storage = match local.precision {
+        Precision::Single => HALF_A_UNIT,
+        Precision::Double => STORED,
+    };
+    let storage = storage.min(rounding);
     let dropped = weighed.dropped_error;
     let predicted = Prediction { dropped, cut, rounding: rounding - storage, storage, ..Prediction::default() };
     let precision = local.precision;

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::Profile;
 use crate::series::bell::Radial;
+use crate::series::nodes::between_nodes;
 use crate::series::paraboloid::cut_off;
 use crate::series::special::{bessel_j, paraboloid_kernel_looked_up};
 
@@ -18,9 +19,6 @@ const STEPS: usize = 4000;
 
 /// What one paraboloid's kernel costs, about, in nanoseconds.
 const KERNEL: f64 = 20.0;
-
-/// Nodes for each 1 of z times the profile's radius, where ĝ is read between nodes instead of summed over all rows.
-const NODES: f64 = 8.0;
 
 impl Profile {
     /// ∫ M dz and ∫ z M dz from each step of z on, where M is the largest |ĝ| from there on; and M.
@@ -58,20 +56,6 @@ impl Profile {
         self.kernels.len() > FEW_ROWS
     }
 
-    /// ĝ at these z, between nodes that reach as far as `last`.
-    fn between_nodes(&self, at: &[f64], last: f64) -> Vec<f64> {
-        let width = (NODES * self.radius()).recip();
-        // ĝ is even, which is what the three nodes before 0 are for.
-        let node = |i: usize| self.transform(width * (i as f64 - 3.0).abs());
-        let nodes: Vec<f64> = (0..(last / width) as usize + 8).into_par_iter().map(node).collect();
-        let read = |&z: &f64| {
-            let place = z / width;
-            let first = place as usize;
-            nodes.get(first..first + 8).map_or_else(|| self.transform(z), |near| between(near, place.fract()))
-        };
-        at.par_iter().map(read).collect()
-    }
-
     /// What the step at the end adds to ĝ/2π, as a disc; `end` is z times the radius.
     fn stepped(&self, end: f64) -> f64 {
         let disc = if end < 1e-4 { 0.5 } else { bessel_j(1, end) / end };
@@ -85,16 +69,6 @@ impl Profile {
     }
 }
 
-/// Lagrange's polynomial through eight values at −3, −2, … 4, at 0 ≤ t ≤ 1. Through waves of at most one
-/// radian for `NODES` nodes it is off by 43.1/8! `NODES`⁻⁸ < 7e-11 of what its waves add up to.
-fn between(near: &[f64], t: f64) -> f64 {
-    // What Π_{j≠k} (k − j) is for each node.
-    const BELOW: [f64; 8] = [-5040.0, 720.0, -240.0, 144.0, -144.0, 240.0, -720.0, 5040.0];
-    let away: [f64; 8] = std::array::from_fn(|k| t + 3.0 - k as f64);
-    let others = |k: usize| (0..8).filter(|&j| j != k).map(|j| away[j]).product::<f64>();
-    near.iter().zip(BELOW).enumerate().map(|(k, (value, below))| value * others(k) / below).sum()
-}
-
 impl Radial for Profile {
     /// Twice by parts, with ∫ r² J1(qr) dr = r² J2(qr)/q: the step at the end as a disc, every kink as a paraboloid.
     fn transform(&self, z: f64) -> f64 {
@@ -103,13 +77,8 @@ impl Radial for Profile {
         TAU * (self.stepped(z * self.radius()) + kinks)
     }
 
-    /// ĝ has nothing faster than the radius in it, so that where many are asked for, few nodes hold all of them.
     fn transforms(&self, at: &[f64]) -> Vec<f64> {
-        let last = at.iter().copied().fold(0.0, f64::max);
-        if NODES * self.radius() * last < 0.5 * at.len() as f64 {
-            return self.between_nodes(at, last);
-        }
-        at.par_iter().map(|&z| self.transform(z)).collect()
+        between_nodes(at, self.radius(), |z| self.transform(z))
     }
 
     /// The smaller of what the kinks leave, which falls slowly, and of all that is left, which falls fast where the
@@ -156,6 +125,7 @@ mod tests {
 
     use super::*;
     use crate::series::Shape as _;
+    use crate::series::nodes::nodes;
     use crate::series::profile::tests::trembling;
     use crate::series::special::paraboloid_kernel;
 
@@ -189,23 +159,12 @@ mod tests {
         let profile = trembling();
         let last = 40.0;
         let at: Vec<f64> = (0..4000).map(|i| last * f64::from(i) / 3999.0).collect();
-        assert!(NODES * profile.radius() * last < 0.5 * at.len() as f64, "few enough nodes");
+        assert!(nodes(last, profile.radius()) < 0.5 * at.len() as f64, "few enough nodes");
         for (z, read) in at.iter().zip(profile.transforms(&at)) {
             let kinks: f64 =
                 profile.kernels.iter().map(|[radius, weight]| weight * paraboloid_kernel(z * radius)).sum();
             let off = (read - TAU * (profile.stepped(z * profile.radius()) + kinks)).abs();
             assert!(off < 2e-8 * profile.volume, "{z}: {off:e}");
-        }
-    }
-
-    #[test]
-    fn a_wave_as_fast_as_the_profile_is_read_between_nodes() {
-        for i in 0..800 {
-            let z = 0.01 * f64::from(i);
-            let node = |k: i32| ((NODES * z).floor() + f64::from(k - 3)) / NODES;
-            let near: Vec<f64> = (0..8).map(|k| node(k).cos()).collect();
-            let off = (between(&near, (NODES * z).fract()) - z.cos()).abs();
-            assert!(off < 7e-11, "{z}: {off:e}");
         }
     }
 
