@@ -277,7 +277,8 @@ fn add(
         // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
         unsafe { gl.bind_vertex_array(Some(how.array)) };
         ghosts.bind_attributes(&ATTRIBUTES, u32::from(!how.points));
-        // SAFETY: the device keeps its context current on this thread, and the array and what it points to are there.
+        // SAFETY: the device keeps its context current on this thread; the array's attributes are the buffer of ghosts, which
+        // has those of every range: `set_drawn` took the ranges from the very slice that it stored.
         unsafe {
             // Points are clipped by their centres, and these may lie beyond the tile.
             gl.viewport(-margin, -margin, width + 2 * margin, height + 2 * margin);

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::direct::STORED;
 use super::effort::Effort;
 use super::period::{self, Reach};
+use super::request::GHOSTS_A_ROUND;
 use super::series::{self, Wide};
 use super::weigh::{self, Weighed};
 use super::{Evaluator, Group, Layer, Plan, Precision, Prediction, Request, cost, direct, rounding, share, terms};
@@ -194,7 +195,7 @@ pub(super) fn made(
 /// Rounds of a loop that `direct` takes for so many ghosts: eight of them a round where there are many, and a few rounds more to
 /// gather them.
 pub(super) fn rounds(ghosts: usize) -> usize {
-    ghosts / 7
+    ghosts / (GHOSTS_A_ROUND - 1)
 }
 
 /// The plan of one evaluator in some floats.

@@ -197,8 +197,8 @@ impl Brief<'_> {
         let marginals = marginals.unwrap_or_else(|| Marginals::by_weights(&terms.groups, degree, self.period));
         // Where the series is given there may be nothing left: then a lattice is to cost a little of what rounding does.
         let budget = interpolation * self.usable.max(if self.given() { 0.1 * self.predicted.single() } else { 0.0 });
-        let over = self.request.oversampling;
-        let lattice = lattice::coarsest(self.precision, degree, self.period, &marginals, self.frame, over, budget)?;
+        let lattice =
+            lattice::coarsest(self.precision, degree, self.period, &marginals, self.frame, budget, self.request)?;
         self.finish(terms, Some(lattice))
     }
 

@@ -6,10 +6,16 @@ use super::settings::Settings;
 use crate::choices::Normalize;
 use crate::gpu::composite::{Composite, Variant};
 use crate::gpu::field::Source;
-use crate::gpu::layout::{DirectGhost, DoubleGhost, SpectralGhost};
+use crate::gpu::layout::{
+    Binding, DirectGhost, DoubleGhost, NORMALIZE_CLAMP, NORMALIZE_MINMAX, NORMALIZE_NONE, PROFILE_HALVINGS,
+    SpectralGhost,
+};
 use crate::plan::{self, Evaluator, Group, Layer, Local, Mode, Modes, Plan, Precision, Series};
 use crate::scene::Ghost;
-use crate::series::{Bell, phase};
+use crate::series::{Bell, Profile, phase};
+
+// A profile that is not given at its centre has a row more.
+const _: () = assert!(Profile::MOST_ROWS < 1 << PROFILE_HALVINGS);
 
 /// A sum of layers, one of them local, and one that is missing; and the local one, in 32-bit floats and in 64.
 const LAYERS: &str = "\"evaluators/layers.glsl\"";
@@ -80,12 +86,12 @@ pub(super) fn variant(source: Source, settings: &Settings) -> Variant {
     Variant { source, normalize: normalize(settings), take_light, straight }
 }
 
-/// How values become glare, by its number in `shared/normalized.glsl`.
-pub(super) fn normalize(settings: &Settings) -> &'static str {
+/// How values become glare.
+pub(super) fn normalize(settings: &Settings) -> Binding {
     match settings.normalize {
-        Normalize::None => "0",
-        Normalize::Clamp => "1",
-        Normalize::Minmax => "2",
+        Normalize::None => NORMALIZE_NONE,
+        Normalize::Clamp => NORMALIZE_CLAMP,
+        Normalize::Minmax => NORMALIZE_MINMAX,
     }
 }
 
@@ -183,4 +189,16 @@ pub(super) fn uniforms(plan: &Plan, settings: &Settings) -> Composite {
 
 pub(super) fn weight(ghost: &Ghost, plan: &Plan) -> [f64; 3] {
     plan::weight(ghost, plan.units())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::evaluators::RUNS;
+
+    #[test]
+    fn every_kind_of_bell_has_its_run() {
+        let last = Bell::examples().iter().map(Bell::kind).max().unwrap();
+        assert!((last as usize) + 1 < RUNS, "`direct` has no run for a bell of kind {last}");
+    }
 }

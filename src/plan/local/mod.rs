@@ -11,6 +11,7 @@ use std::sync::Arc;
 
 use super::candidate::{Survey, made};
 use super::direct::{HALF_A_UNIT, STORED};
+use super::request::GHOSTS_A_ROUND;
 use super::weigh::Weighed;
 use super::{Cost, Evaluator, Group, Layer, Plan, Precision, Prediction, Request, Transform, cost, share};
 use crate::frame::Frame;
@@ -81,7 +82,7 @@ impl Local {
 }
 
 impl Local {
-    /// Whether the lists of 64-bit ghosts, eight of them a round, are what a renderer goes through and has room for.
+    /// Whether the lists of 64-bit ghosts, some of them a round, are what a renderer goes through and has room for.
     ///
     /// # Errors
     /// [`Error::Plan`] where they are not.
@@ -90,7 +91,7 @@ impl Local {
             return Ok(());
         }
         let ghosts: usize = self.groups.iter().map(|group| group.ghosts).sum();
-        if ghosts / 8 > loop_rounds {
+        if ghosts / GHOSTS_A_ROUND > loop_rounds {
             return Err(Error::Plan("local would need more rounds of a loop than this renderer runs".into()));
         }
         let blocks = self.side() / f64::from(1u32 << block_shift(self.side())) + 1.0;
