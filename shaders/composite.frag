@@ -18,7 +18,7 @@ layout(location = 0) out vec4 picture;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec3 added = strength * normalized(scale.rgb * glare(pixel) - constant.rgb, flat_span);
+    vec3 added = strength * normalized(scale.rgb * vec3(glare(pixel)) - constant.rgb, flat_span);
 #ifdef GLARE_ALONE
     picture = vec4(added, 1.0);
 #else

@@ -4,5 +4,5 @@
 layout(location = 0) out vec4 value;
 
 void main() {
-    value = vec4(glare(ivec2(gl_FragCoord.xy)), 1.0);
+    value = vec4(vec3(glare(ivec2(gl_FragCoord.xy))), 1.0);
 }

@@ -24,8 +24,15 @@ layout(std140, binding = BINDING_PASS) uniform Pass {
     int columns;  // of blocks
     int blocks;   // in all
     int shift;    // of a block's side, a power of two
+    int width;    // of the tile
     double aspect; // a pixel's width over its height
 };
+#ifdef EXACT
+layout(std430, binding = BINDING_NODES) buffer Canvas {
+    uvec4 canvas_head;
+    double canvas[]; // red, green, blue: pixel by pixel
+};
+#endif
 layout(location = 0) out vec4 value;
 
 // Adds the ghosts of one bell that a list has. A loop for each, as in `direct`.
@@ -52,6 +59,12 @@ void main() {
     EACH_BELL(SUM)
 #else
     SUM(0, bell_value)
+#endif
+#ifdef EXACT
+    int at = 3 * (int(gl_FragCoord.y) * width + int(gl_FragCoord.x));
+    canvas[at] = red;
+    canvas[at + 1] = green;
+    canvas[at + 2] = blue;
 #endif
     value = vec4(red, green, blue, 0.0);
 }

@@ -7,5 +7,5 @@ layout(std430, binding = BINDING_PROBES) readonly buffer Probes {
 layout(location = 0) out vec4 value;
 
 void main() {
-    value = vec4(glare(probes[int(gl_FragCoord.x)]), 1.0);
+    value = vec4(vec3(glare(probes[int(gl_FragCoord.x)])), 1.0);
 }

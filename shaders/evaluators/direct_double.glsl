@@ -48,7 +48,7 @@ layout(std140, binding = BINDING_DIRECT) uniform Direct {
     }
 #define RUN(kind, bell_of) SUM(bell_of, runs[kind / 4][kind % 4], runs[(kind + 1) / 4][(kind + 1) % 4])
 
-vec3 glare(ivec2 pixel) {
+dvec3 glare(ivec2 pixel) {
     ivec2 p = corner + pixel;
     precise double x = aspect * double(2 * p.x + 1 - size.x) / double(size.y);
     precise double y = double(size.y - 2 * p.y - 1) / double(size.y);
@@ -58,5 +58,5 @@ vec3 glare(ivec2 pixel) {
 #else
     SUM(bell_value, 0u, ghost_count)
 #endif
-    return vec3(red, green, blue);
+    return dvec3(red, green, blue);
 }

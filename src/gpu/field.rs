@@ -10,14 +10,16 @@ use crate::Result;
 pub(crate) struct Source {
     /// Its file in `shaders/`.
     pub evaluator: &'static str,
-    /// The files of the series and of the direct sum where the function is the sum of both.
-    pub parts: Option<[&'static str; 2]>,
+    /// The files of the series, of the direct sum and of what is drawn where it reaches, where the function is their sum.
+    pub parts: Option<[&'static str; 3]>,
     /// The file of the bell, or of all bells, that it includes, if any.
     pub bell: Option<&'static str>,
     /// Whether there are more ghosts than fit a uniform block.
     pub many_ghosts: bool,
     /// Whether the bells are computed in 64-bit floats.
     pub double: bool,
+    /// Whether parts are added up in 64-bit floats, since one of them is.
+    pub exact: bool,
 }
 
 impl Source {
@@ -26,19 +28,24 @@ impl Source {
 
     /// The function in a file that is one by itself.
     pub const fn of(evaluator: &'static str) -> Self {
-        Self { evaluator, parts: None, bell: None, many_ghosts: false, double: false }
+        Self { evaluator, parts: None, bell: None, many_ghosts: false, double: false, exact: false }
     }
 
     /// What a shader is specialised with to include this function.
     pub fn defines(self) -> Vec<(&'static str, &'static str)> {
         let mut defines = vec![("EVALUATOR", self.evaluator)];
-        defines.extend(self.parts.into_iter().flat_map(|[series, direct]| [("SERIES", series), ("DIRECT", direct)]));
+        let parts =
+            |[series, direct, local]: [&'static str; 3]| [("SERIES", series), ("DIRECT", direct), ("LOCAL", local)];
+        defines.extend(self.parts.into_iter().flat_map(parts));
         defines.extend(self.bell.map(|bell| ("BELL", bell)));
         if self.many_ghosts {
             defines.push(("MANY_GHOSTS", "1"));
         }
         if self.double {
             defines.push(("DOUBLE", "1"));
+        }
+        if self.exact {
+            defines.push(("EXACT", "1"));
         }
         defines
     }
@@ -49,6 +56,7 @@ pub(crate) struct FieldPass {
     field: Scratch,
     /// How often it was drawn.
     stamp: u64,
+    piece: Scratch,
     probed: Scratch,
     probes: Buffer<[i32; 2]>,
 }
@@ -56,7 +64,8 @@ pub(crate) struct FieldPass {
 impl FieldPass {
     pub fn new(runner: &Runner) -> Result<Self> {
         let probes = Buffer::new(runner.device(), 0)?;
-        Ok(Self { field: Scratch::default(), stamp: 0, probed: Scratch::default(), probes })
+        let [field, piece, probed] = [(); 3].map(|()| Scratch::default());
+        Ok(Self { field, stamp: 0, piece, probed, probes })
     }
 
     /// The field of a tile of `width` × `height` pixels, in units of its scale.
@@ -76,6 +85,29 @@ impl FieldPass {
         let field = self.field.get(runner.device(), Texel::Rgba, width, height)?;
         runner.draw_in_bands("field.frag", &source.defines(), field, bands)?;
         Ok(field)
+    }
+
+    /// Begins a field of so many columns and rows that comes in pieces.
+    pub fn begin(&mut self, runner: &Runner, [width, height]: [u32; 2]) -> Result<()> {
+        self.stamp += 1;
+        self.field.get(runner.device(), Texel::Rgba, width, height).map(drop)
+    }
+
+    /// Draws a piece of the field that was begun, in its place; the function counts its pixels from the piece's corner.
+    pub fn draw_piece(
+        &mut self,
+        runner: &Runner,
+        source: Source,
+        at: [u32; 2],
+        [width, height]: [u32; 2],
+        bands: u32,
+    ) -> Result<()> {
+        let piece = self.piece.get(runner.device(), Texel::Rgba, width, height)?;
+        runner.draw_in_bands("field.frag", &source.defines(), piece, bands)?;
+        if let Some(field) = self.field.current() {
+            field.place(piece, at);
+        }
+        Ok(())
     }
 
     /// What was drawn last, and what tells it from any other before.

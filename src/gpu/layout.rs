@@ -28,6 +28,12 @@ pub(crate) const PROBES: Binding = ("BINDING_PROBES", 5);
 pub(crate) const TABLE: Binding = ("BINDING_TABLE", 6);
 pub(crate) const SHAPES: Binding = ("BINDING_SHAPES", 7);
 
+/// Of a series in 64-bit floats, which needs none of those that have these numbers meanwhile: waves along an axis; profiles or
+/// strips, or the other axis's waves; and nodes of a lattice, or the canvas of `local`.
+pub(crate) const WAVES: Binding = ("BINDING_WAVES", 4);
+pub(crate) const SUMS: Binding = ("BINDING_SUMS", 1);
+pub(crate) const NODES: Binding = ("BINDING_NODES", 6);
+
 /// Of the measurement of precision, which no other pass is bound for meanwhile.
 pub(crate) const ARGUMENTS: Binding = ("BINDING_ARGUMENTS", 0);
 pub(crate) const VALUES: Binding = ("BINDING_VALUES", 1);
@@ -65,7 +71,7 @@ pub(crate) const LAST_UNIT: u32 = CANVAS.1;
 pub(crate) const LARGEST_POINT: i32 = 64;
 
 /// Every binding, for the head of every shader.
-pub(crate) const BINDINGS: [Binding; 30] = [
+pub(crate) const BINDINGS: [Binding; 33] = [
     PASS,
     EVALUATOR,
     SAMPLES,
@@ -79,6 +85,9 @@ pub(crate) const BINDINGS: [Binding; 30] = [
     PROBES,
     TABLE,
     SHAPES,
+    WAVES,
+    SUMS,
+    NODES,
     ARGUMENTS,
     VALUES,
     PHOTO,
@@ -98,13 +107,42 @@ pub(crate) const BINDINGS: [Binding; 30] = [
     CANVAS,
 ];
 
-/// Numbers that passes and their shaders have to agree on, for the head of every shader: work groups, and what is done in
-/// one round of a loop.
-pub(crate) const NUMBERS: [Binding; 11] = [
+/// How a value of the field becomes glare: as it is, clamped to 0..1, or stretched to 0..1 by the range.
+pub(crate) const NORMALIZE_NONE: Binding = ("NORMALIZE_NONE", 0);
+pub(crate) const NORMALIZE_CLAMP: Binding = ("NORMALIZE_CLAMP", 1);
+pub(crate) const NORMALIZE_MINMAX: Binding = ("NORMALIZE_MINMAX", 2);
+
+/// How light comes into a display's range.
+pub(crate) const TONE_MAP_NONE: Binding = ("TONE_MAP_NONE", 0);
+pub(crate) const TONE_MAP_REINHARD: Binding = ("TONE_MAP_REINHARD", 1);
+pub(crate) const TONE_MAP_ACES: Binding = ("TONE_MAP_ACES", 2);
+pub(crate) const TONE_MAP_AGX: Binding = ("TONE_MAP_AGX", 3);
+
+/// Bits after the point of a place between a lattice's nodes; those of 32 before it count whole nodes.
+pub(crate) const KNOT_BITS: u32 = 20;
+
+/// Halvings that find a row among those of a profile's table.
+pub(crate) const PROFILE_HALVINGS: u32 = 13;
+
+/// Numbers that passes and their shaders have to agree on, for the head of every shader: work groups, what is done in one
+/// round of a loop, and what else a shader counts by.
+pub(crate) const NUMBERS: [Binding; 23] = [
+    NORMALIZE_NONE,
+    NORMALIZE_CLAMP,
+    NORMALIZE_MINMAX,
+    TONE_MAP_NONE,
+    TONE_MAP_REINHARD,
+    TONE_MAP_ACES,
+    TONE_MAP_AGX,
+    ("KNOT_BITS", KNOT_BITS),
+    ("PROFILE_HALVINGS", PROFILE_HALVINGS),
+    ("SPECTRUM_BATCH", super::spectrum::BATCH),
     ("DIRECT_STEP", super::evaluators::STEP as u32),
     ("DIRECT_BATCH", super::evaluators::BATCH as u32),
     ("DIRECT_FEW_BYTES", super::evaluators::FEW_BYTES),
     ("DIRECT_RUNS", super::evaluators::RUNS as u32),
+    ("DOUBLE_GROUP", super::exact::GROUP),
+    ("SPLINE_ORDER", super::exact::ORDER),
     ("SPECTRUM_TILE", super::spectrum::TILE),
     ("SPECTRUM_MINE", super::spectrum::MINE),
     ("SPECTRUM_ROWS", super::spectrum::TILE / super::spectrum::MINE),
@@ -200,8 +238,8 @@ impl SummedGhost for DoubleGhost {
     }
 }
 
-/// Where the pixels along one axis lie between the lattice's nodes: pixel i at `start + i * pitch`, counted in 2⁻²⁰ of a
-/// node from the second node that the tile has.
+/// Where the pixels along one axis lie between the lattice's nodes: pixel i at `start + i * pitch`, counted from the second
+/// node that the tile has, with [`KNOT_BITS`] bits after the point.
 ///
 /// Integers, so that every tile gives a pixel the same place, bit for bit, and a shader needs no table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
@@ -209,6 +247,8 @@ impl SummedGhost for DoubleGhost {
 pub(crate) struct Knots {
     pub start: u32,
     pub pitch: u32,
-    pub pad: [u32; 2],
+    /// Nodes that the tile has along the axis.
+    pub nodes: u32,
+    pub pad: u32,
 }
 const _: () = assert!(size_of::<Knots>() == 16);

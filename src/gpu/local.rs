@@ -7,7 +7,8 @@ use glow::HasContext as _;
 
 use super::context::Device;
 use super::evaluators::{STEP, Words, within_rounds};
-use super::layout::{CANVAS, DoubleGhost, GHOSTS, LARGEST_POINT, LocalGhost, PARTIALS, PASS, SHAPES};
+use super::exact::room;
+use super::layout::{CANVAS, DoubleGhost, GHOSTS, LARGEST_POINT, LocalGhost, NODES, PARTIALS, PASS, SHAPES};
 use super::resource::{Attribute, Buffer, Scratch, Texel, Texture};
 use super::runner::Runner;
 use crate::frame::Frame;
@@ -89,6 +90,10 @@ pub(crate) struct LocalPass {
     shapes: Buffer<Words>,
     tile: Buffer<[i32; 12]>,
     canvas: Scratch,
+    /// The canvas of listed ghosts that are one layer of some: its head, then pixels of three doubles, two doubles an element.
+    exact: Buffer<[f64; 2]>,
+    /// Whether that is where it is read.
+    in_doubles: bool,
     scene: Scene,
     /// Whether points are as large as they may be asked to.
     points: bool,
@@ -115,6 +120,8 @@ impl LocalPass {
             shapes: Buffer::new(device, 0)?,
             tile: Buffer::new(device, 1)?,
             canvas: Scratch::default(),
+            exact: Buffer::new(device, 1)?,
+            in_doubles: false,
             scene: Scene::Nothing,
             blends: [glow::FULL_SUPPORT, glow::CAVEAT_SUPPORT].contains(&(support[0] as u32)),
             points: sizes[1] >= LARGEST_POINT as f32,
@@ -196,22 +203,38 @@ impl LocalPass {
                 let [low, high] = [aspect as u32 as i32, (aspect >> 32) as i32];
                 let [x, y] = corner;
                 let size = [frame.width as i32, frame.height as i32];
-                let of_blocks = [columns, blocks, shift].map(|number| number as i32);
-                let [columns, blocks, shift] = of_blocks;
-                let words = [x, y, size[0], size[1], window.x, window.y, columns, blocks, shift, 0, low, high];
+                let [columns, blocks, shift, wide] = [columns, blocks, shift, width].map(|number| number as i32);
+                let words = [x, y, size[0], size[1], window.x, window.y, columns, blocks, shift, wide, low, high];
                 self.tile.store(&[words])?;
                 self.doubles.bind_storage(GHOSTS);
                 self.lists.bind_storage(PARTIALS);
-                runner.draw_in_bands(
-                    "local_lists.frag",
-                    &[("BELL", bell), ("DOUBLE", "1"), ("LIST_STEP", &format!("{step}u"))],
-                    canvas,
-                    bands.min(height),
-                )?;
+                let step = format!("{step}u");
+                let mut defines = vec![("BELL", bell), ("DOUBLE", "1"), ("LIST_STEP", &step)];
+                if self.in_doubles {
+                    let pixels = width as usize * height as usize;
+                    room(runner, &mut self.exact, 1 + (3 * pixels).div_ceil(2))?;
+                    self.exact.store(&[[f64::from_bits(u64::from(width)), 0.0]])?;
+                    self.exact.bind_storage(NODES);
+                    defines.push(("EXACT", "1"));
+                }
+                runner.draw_in_bands("local_lists.frag", &defines, canvas, bands.min(height))?;
+                runner.written();
             }
         }
         canvas.bind(CANVAS);
         Ok(())
+    }
+
+    /// Whether listed ghosts are one layer of some, and their canvas is to be one of doubles.
+    pub fn set_in_doubles(&mut self, in_doubles: bool) {
+        self.in_doubles = in_doubles;
+    }
+
+    /// Binds a canvas of doubles as it was drawn last.
+    pub fn bind(&self) {
+        if self.in_doubles {
+            self.exact.bind_storage(NODES);
+        }
     }
 }
 
@@ -254,7 +277,8 @@ fn add(
         // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
         unsafe { gl.bind_vertex_array(Some(how.array)) };
         ghosts.bind_attributes(&ATTRIBUTES, u32::from(!how.points));
-        // SAFETY: the device keeps its context current on this thread, and the array and what it points to are there.
+        // SAFETY: the device keeps its context current on this thread; the array's attributes are the buffer of ghosts, which
+        // has those of every range: `set_drawn` took the ranges from the very slice that it stored.
         unsafe {
             // Points are clipped by their centres, and these may lie beyond the tile.
             gl.viewport(-margin, -margin, width + 2 * margin, height + 2 * margin);

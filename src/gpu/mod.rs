@@ -9,6 +9,7 @@
 //! | `runner`, `timer` | runs passes and times them |
 //! | `spectrum` | ghosts → A, B, C, D |
 //! | `harmonics`, `evaluators` | spectrum → the function `glare(pixel)` of each evaluator |
+//! | `exact` | the same in 64-bit floats, for a series |
 //! | `field`, `range`, `composite` | that function → the field, its range, the picture |
 //! | `local` | ghosts drawn where they reach → the canvas that `local`'s function reads |
 //! | `graf` | bells on a disc → their Bessel spectrum → the function `glare(pixel)` of Graf's theorem |
@@ -19,7 +20,9 @@
 //! | `shrink`, `view` | means of the picture, where it is made smaller; the picture as a display shows it |
 //! | `precision` | how exact the driver's sin, cos and exp are, and vglare's phases |
 
-// Calling OpenGL is unsafe; each block says what makes it sound.
+// Calling OpenGL is unsafe; each block says what makes it sound. That a device keeps its context current on this thread rests
+// on these: a device never leaves its thread; no more than one is opened on a thread at a time; one that was abandoned gives
+// no functions; and who adopts a context promises it. So whatever lives on a thread is of the one device, and "its own".
 #![allow(unsafe_code)]
 
 pub(crate) mod coefficients;
@@ -27,6 +30,7 @@ pub(crate) mod composite;
 mod context;
 pub(crate) mod copy;
 pub(crate) mod evaluators;
+pub(crate) mod exact;
 pub(crate) mod field;
 pub(crate) mod graf;
 mod harmonics;

@@ -83,6 +83,12 @@ impl Runner {
         Ok(())
     }
 
+    /// Lets what passes have written to buffers be read by those that follow.
+    pub fn written(&self) {
+        // SAFETY: the device keeps its context current on this thread, and numbers are all that it is given.
+        unsafe { self.device.gl().memory_barrier(glow::SHADER_STORAGE_BARRIER_BIT) }
+    }
+
     /// Draws a region of the screen with a fragment shader of `shaders/`.
     pub fn draw_screen(&self, path: &str, defines: &[Define<'_>], screen: &Screen, region: Region) -> Result<()> {
         let program = self.program(path, defines, Program::fragment)?;

@@ -44,12 +44,16 @@ const SOURCES: &[(&str, &str)] = &sources![
     "evaluators/direct_double.glsl",
     "evaluators/graf.glsl",
     "evaluators/grid.glsl",
+    "evaluators/grid_double.glsl",
     "evaluators/held.glsl",
     "evaluators/layers.glsl",
     "evaluators/local.glsl",
+    "evaluators/local_double.glsl",
     "evaluators/none.glsl",
     "evaluators/rows.glsl",
+    "evaluators/rows_double.glsl",
     "evaluators/series.glsl",
+    "evaluators/series_double.glsl",
     "evaluators/split.glsl",
     "field.frag",
     "fullscreen.vert",
@@ -58,6 +62,7 @@ const SOURCES: &[(&str, &str)] = &sources![
     "graf_spectrum.comp",
     "harmonics.frag",
     "lattice.frag",
+    "lattice_double.comp",
     "lines.frag",
     "lines.vert",
     "local.frag",
@@ -67,9 +72,11 @@ const SOURCES: &[(&str, &str)] = &sources![
     "precision.comp",
     "probe.frag",
     "profiles.frag",
+    "profiles_double.comp",
     "range.frag",
     "shared/bessel.glsl",
     "shared/bspline.glsl",
+    "shared/bspline_double.glsl",
     "shared/double.glsl",
     "shared/emission.glsl",
     "shared/knots.glsl",
@@ -78,11 +85,14 @@ const SOURCES: &[(&str, &str)] = &sources![
     "shared/shapes.glsl",
     "shared/sine.glsl",
     "shared/spectrum.glsl",
+    "shared/spectrum_double.glsl",
     "shared/tone.glsl",
+    "shared/waves.glsl",
     "shrink.frag",
     "spectrum.comp",
     "spectrum_sum.comp",
     "strips.frag",
+    "strips_double.comp",
     "view.frag",
 ];
 
@@ -162,8 +172,9 @@ impl Program {
     /// Runs a compute program, and makes what it stores visible to every later pass.
     pub fn dispatch(&self, groups: [u32; 3]) {
         self.bind();
-        // SAFETY: the device keeps its context current on this thread; the shader reads and writes within what is
-        // bound, as GL holds it to.
+        // SAFETY: the device keeps its context current on this thread. OpenGL 4.3 does not keep a shader from reading and
+        // writing beside what is bound; each shader stops at the counts that its pass gives it or at the buffer's own length,
+        // and each pass makes its buffers for these counts.
         unsafe {
             self.device.gl().dispatch_compute(groups[0], groups[1], groups[2]);
             self.device.gl().memory_barrier(glow::SHADER_STORAGE_BARRIER_BIT);
@@ -271,6 +282,29 @@ mod tests {
         found.sort();
         let embedded: Vec<_> = SOURCES.iter().map(|(name, _)| name.to_string()).collect();
         assert_eq!(found, embedded, "SOURCES, sorted, must list the files of shaders/");
+    }
+
+    #[test]
+    fn every_number_that_is_defined_is_used_and_every_one_that_is_compared_with_is_defined() {
+        let words = |text: &'static str| text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+        let used: Vec<_> = SOURCES.iter().flat_map(|(_, source)| words(source)).collect();
+        // What no shader asks for, since it is what is left where nothing is done.
+        let left = ["NORMALIZE_NONE", "TONE_MAP_NONE"];
+        let defined: Vec<_> = BINDINGS.into_iter().chain(NUMBERS).map(|(name, _)| name).collect();
+        // Some are Rust's alone.
+        for name in defined.iter().filter(|name| !left.contains(name) && !name.starts_with("UNIT_WORKBENCH")) {
+            assert!(used.contains(name), "no shader uses {name}");
+        }
+        let mut compared = 0;
+        for (path, source) in SOURCES {
+            for line in source.lines().filter(|line| line.starts_with("#if ") || line.starts_with("#elif ")) {
+                if let Some((_, number)) = line.split_once(" == ") {
+                    assert!(defined.contains(&number), "{path}: {line}: is not defined, and would be 0");
+                    compared += 1;
+                }
+            }
+        }
+        assert!(compared >= 5, "{compared}");
     }
 
     #[test]

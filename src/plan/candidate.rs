@@ -3,8 +3,10 @@
 use std::cell::Cell;
 use std::sync::Arc;
 
+use super::direct::STORED;
 use super::effort::Effort;
 use super::period::{self, Reach};
+use super::request::GHOSTS_A_ROUND;
 use super::series::{self, Wide};
 use super::weigh::{self, Weighed};
 use super::{Evaluator, Group, Layer, Plan, Precision, Prediction, Request, cost, direct, rounding, share, terms};
@@ -14,6 +16,8 @@ use crate::{Error, Result};
 
 /// The part of the tolerance that a series needs for its own bounds.
 pub(super) const NEEDED: f64 = 0.25;
+/// And where 64-bit floats leave no more to be had: a digit more costs little.
+const NEEDED_DOUBLE: f64 = 0.1;
 
 /// What all evaluators' plans begin with.
 pub(super) struct Survey {
@@ -37,6 +41,8 @@ pub(super) struct Beside {
     pub rounding: f64,
     /// What is left out where bells are summed where they reach.
     pub cut: f64,
+    /// Whether all of them are in 64-bit floats, and so is the series to be; then what storing the sum costs is not in it.
+    pub exact: bool,
 }
 
 impl Survey {
@@ -92,25 +98,67 @@ pub(super) fn candidate(
 ) -> Result<Plan> {
     if evaluator == Evaluator::Direct {
         let bounds = direct::bounds(problem, &survey.weighed);
-        let single = with_rounding(problem, (Precision::Single, bounds.single), survey, wide, request, evaluator);
-        return match single {
+        let of = |precision, rounding| Floats { series: precision, summed: precision, rounding };
+        let single = of(Precision::Single, bounds.single);
+        return match with_rounding(problem, single, survey, wide, request, evaluator) {
             Err(Error::ToleranceBelowFloor { .. }) => {
-                with_rounding(problem, (Precision::Double, bounds.double), survey, wide, request, evaluator)
+                let double = of(Precision::Double, STORED + bounds.double);
+                with_rounding(problem, double, survey, wide, request, evaluator)
             }
             single => single,
         };
     }
+    let series = |precision| series_in(precision, problem, survey, wide, request, evaluator);
+    if survey.beside.exact {
+        return series(Precision::Double);
+    }
+    // Layers beside it are of the floats that go with a series in 32 bits.
+    let alone = survey.beside.layers.is_empty();
+    match series(Precision::Single) {
+        Err(Error::ToleranceBelowFloor { .. }) if alone => series(Precision::Double),
+        // A series that is given in all is never refused.
+        Ok(single) if alone && single.predicted.total() > request.tolerance => Ok(match series(Precision::Double) {
+            Ok(double) if double.predicted.total() < single.predicted.total() => double,
+            _ => single,
+        }),
+        single => single,
+    }
+}
+
+/// The floats of a plan, and what they cost.
+#[derive(Clone, Copy)]
+struct Floats {
+    series: Precision,
+    summed: Precision,
+    rounding: f64,
+}
+
+/// The plan of a series in floats of this precision, beside what the survey has.
+fn series_in(
+    series: Precision,
+    problem: &Arc<Problem>,
+    survey: &Survey,
+    wide: Option<&Wide>,
+    request: &Request,
+    evaluator: Evaluator,
+) -> Result<Plan> {
     // What rounding costs depends on the degree, and the degree on what rounding leaves of the tolerance.
     let mut degree = request.degree.map_or(rounding::SEEN_DEGREE, |[n, m]| n.max(m));
     loop {
         let Beside { precision, rounding: beside, cut, .. } = survey.beside;
-        let mut rounding = rounding::bound(&survey.weighed, evaluator, degree) + beside;
-        if rounding + cut > (1.0 - NEEDED) * request.tolerance
+        let mut rounding = beside
+            + match series {
+                Precision::Single => rounding::bound(&survey.weighed, evaluator, degree),
+                Precision::Double => STORED + rounding::of_exact(&survey.groups, [degree; 2]),
+            };
+        if series == Precision::Single
+            && rounding + cut > (1.0 - NEEDED) * request.tolerance
             && let Some(wide) = wide
         {
             rounding = rounding.min(wide.rounding(evaluator) + beside);
         }
-        let plan = with_rounding(problem, (precision, rounding), survey, wide, request, evaluator)?;
+        let summed = if series == Precision::Double { series } else { precision };
+        let plan = with_rounding(problem, Floats { series, summed, rounding }, survey, wide, request, evaluator)?;
         let needed = plan.degree()[0].max(plan.degree()[1]);
         if needed <= degree {
             return Ok(plan);
@@ -143,29 +191,36 @@ pub(super) fn made(
 /// Rounds of a loop that `direct` takes for so many ghosts: eight of them a round where there are many, and a few rounds more to
 /// gather them.
 pub(super) fn rounds(ghosts: usize) -> usize {
-    ghosts / 7
+    ghosts / (GHOSTS_A_ROUND - 1)
 }
 
-/// The plan of one evaluator that rounding costs so much, its summed ghosts in floats of this precision.
+/// The plan of one evaluator in some floats.
 fn with_rounding(
     problem: &Arc<Problem>,
-    (precision, rounding): (Precision, f64),
+    floats: Floats,
     survey: &Survey,
     wide: Option<&Wide>,
     request: &Request,
     evaluator: Evaluator,
 ) -> Result<Plan> {
-    let weighed = &survey.weighed;
+    let (weighed, Floats { series, summed, rounding }) = (&survey.weighed, floats);
     // With the whole of the series given, there is nothing left to plan: the error is predicted as it comes.
     let given = request.period.is_some() && request.degree.is_some();
     let cut = survey.beside.cut;
     let usable = request.tolerance - rounding - cut;
     // A direct sum leaves out nothing but ghosts; a series needs room for its own bounds.
-    let needed = if evaluator == Evaluator::Direct { share::DROPPED } else { NEEDED };
+    let needed = match (evaluator, series) {
+        (Evaluator::Direct, _) => share::DROPPED,
+        (_, Precision::Single) => NEEDED,
+        (_, Precision::Double) => NEEDED_DOUBLE,
+    };
     if usable < needed * request.tolerance && !given {
         return Err(Error::ToleranceBelowFloor { asked: request.tolerance, floor: (rounding + cut) / (1.0 - needed) });
     }
-    let storage = rounding::stored(weighed, evaluator).min(rounding);
+    let storage = match series {
+        Precision::Single => rounding::stored(weighed, evaluator).min(rounding),
+        Precision::Double => STORED,
+    };
     let mut predicted = Prediction {
         dropped: weighed.dropped_error,
         cut,
@@ -178,12 +233,12 @@ fn with_rounding(
         layers.push(Layer::direct(survey.groups.iter().cloned()));
     } else {
         let (series, with_series) =
-            series::plan_series(evaluator, survey, wide, problem.frame(), request, predicted, usable)?;
+            series::plan_series((evaluator, series), survey, wide, problem.frame(), request, predicted, usable)?;
         predicted = with_series;
         layers.push(Layer::Series(series));
         layers.extend(survey.beside.layers.iter().cloned());
     }
-    let plan = made(problem, weighed, request, layers, precision, predicted);
+    let plan = made(problem, weighed, request, layers, summed, predicted);
     let rounds = match evaluator {
         Evaluator::Direct => rounds(plan.ghosts()),
         Evaluator::Series => plan.terms() + plan.counts().len() + plan.summed(),

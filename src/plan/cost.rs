@@ -40,6 +40,21 @@ pub struct CostModel {
     /// One pixel of what they are drawn on, by `local`.
     #[serde(default = "lacking", skip_serializing_if = "is_lacking")]
     pub canvas: f64,
+    /// The same as `term`, in 64-bit floats. Calibrations from before there were such series lack this, and the four that follow.
+    #[serde(default = "lacking", skip_serializing_if = "is_lacking")]
+    pub term_double: f64,
+    /// The same as `harmonic`.
+    #[serde(default = "lacking", skip_serializing_if = "is_lacking")]
+    pub harmonic_double: f64,
+    /// The same as `profile`.
+    #[serde(default = "lacking", skip_serializing_if = "is_lacking")]
+    pub profile_double: f64,
+    /// One node of the lattice stretched to one row.
+    #[serde(default = "lacking", skip_serializing_if = "is_lacking")]
+    pub strip_double: f64,
+    /// The same as `interpolation`, with a B-spline of more nodes.
+    #[serde(default = "lacking", skip_serializing_if = "is_lacking")]
+    pub interpolation_double: f64,
     /// Starting a pass.
     pub pass: f64,
 }
@@ -58,6 +73,11 @@ impl Default for CostModel {
             splat: 2.8,
             quad: 650.0,
             canvas: 5.0,
+            term_double: 10.0,
+            harmonic_double: 5.5,
+            profile_double: 12.0,
+            strip_double: 12.0,
+            interpolation_double: 22.0,
             pass: 130_000.0,
         }
     }
@@ -79,7 +99,7 @@ fn is_lacking(value: &f64) -> bool {
 
 impl CostModel {
     /// How many constants there are.
-    pub const COUNT: usize = 12;
+    pub const COUNT: usize = 17;
 
     /// The constants' names, in the order of [`CostModel::values`].
     pub const NAMES: [&'static str; Self::COUNT] = [
@@ -94,20 +114,92 @@ impl CostModel {
         "splat",
         "quad",
         "canvas",
+        "term_double",
+        "harmonic_double",
+        "profile_double",
+        "strip_double",
+        "interpolation_double",
         "pass",
     ];
 
     /// The constants in nanoseconds, in the order of [`CostModel::NAMES`].
     pub fn values(&self) -> [f64; Self::COUNT] {
-        let &Self { bell, term, harmonic, profile, strip, interpolation, spectrum, moment, splat, quad, canvas, pass } =
-            self;
-        [bell, term, harmonic, profile, strip, interpolation, spectrum, moment, splat, quad, canvas, pass]
+        [
+            self.bell,
+            self.term,
+            self.harmonic,
+            self.profile,
+            self.strip,
+            self.interpolation,
+            self.spectrum,
+            self.moment,
+            self.splat,
+            self.quad,
+            self.canvas,
+            self.term_double,
+            self.harmonic_double,
+            self.profile_double,
+            self.strip_double,
+            self.interpolation_double,
+            self.pass,
+        ]
     }
 
     /// The constants from nanoseconds, in the order of [`CostModel::NAMES`].
     pub fn from_values(values: [f64; Self::COUNT]) -> Self {
-        let [bell, term, harmonic, profile, strip, interpolation, spectrum, moment, splat, quad, canvas, pass] = values;
-        Self { bell, term, harmonic, profile, strip, interpolation, spectrum, moment, splat, quad, canvas, pass }
+        let [
+            bell,
+            term,
+            harmonic,
+            profile,
+            strip,
+            interpolation,
+            spectrum,
+            moment,
+            splat,
+            quad,
+            canvas,
+            term_double,
+            harmonic_double,
+            profile_double,
+            strip_double,
+            interpolation_double,
+            pass,
+        ] = values;
+        Self {
+            bell,
+            term,
+            harmonic,
+            profile,
+            strip,
+            interpolation,
+            spectrum,
+            moment,
+            splat,
+            quad,
+            canvas,
+            term_double,
+            harmonic_double,
+            profile_double,
+            strip_double,
+            interpolation_double,
+            pass,
+        }
+    }
+
+    /// With what a series costs in floats of a precision in the place of what it does in 32-bit ones.
+    fn in_floats(&self, precision: Precision) -> Self {
+        match precision {
+            Precision::Single => *self,
+            Precision::Double => Self {
+                term: self.term_double,
+                harmonic: self.harmonic_double,
+                profile: self.profile_double,
+                strip: self.strip_double,
+                interpolation: self.interpolation_double,
+                ..*self
+            },
+        }
     }
 
     /// With all constants, where some are lacking: then these are to the others as they are in the built-in model.
@@ -170,7 +262,7 @@ pub(super) fn estimate(layers: &[Layer], precision: Precision, frame: Frame, mod
         Layer::Local(layer) => local(&layer.groups, layer.reached, layer.precision, frame, model),
         Layer::Series(series) => {
             let spectrum: f64 = series.groups.iter().map(|group| gather::cost(group, &group.transform, model)).sum();
-            spectrum + field(series.evaluator, &Size::of(series), frame, model)
+            spectrum + field(series.evaluator, series.precision, &Size::of(series), frame, model)
         }
     };
     let evaluator = layers.first().map_or(Evaluator::Direct, Layer::evaluator);
@@ -198,7 +290,8 @@ impl Size {
 }
 
 /// What the field of a series costs with all the passes that it takes, in nanoseconds.
-pub(super) fn field(evaluator: Evaluator, size: &Size, frame: Frame, model: &CostModel) -> f64 {
+pub(super) fn field(evaluator: Evaluator, precision: Precision, size: &Size, frame: Frame, model: &CostModel) -> f64 {
+    let model = &model.in_floats(precision);
     let window = frame.window;
     let pixels = window.pixels() as f64;
     let rows = |rows: f64, columns: f64| {
@@ -219,7 +312,13 @@ pub(super) fn field(evaluator: Evaluator, size: &Size, frame: Frame, model: &Cos
 /// What a series costs at least, whatever its terms, in milliseconds.
 pub(super) fn least(evaluator: Evaluator, frame: Frame, model: &CostModel) -> f64 {
     const FEWEST_NODES: f64 = 4.0;
-    1e-6 * field(evaluator, &Size { terms: 1.0, degree: [0; 2], nodes: [FEWEST_NODES; 2] }, frame, model)
+    1e-6 * field(
+        evaluator,
+        Precision::Single,
+        &Size { terms: 1.0, degree: [0; 2], nodes: [FEWEST_NODES; 2] },
+        frame,
+        model,
+    )
 }
 
 /// What summing these ghosts at every pixel costs, in nanoseconds.
@@ -291,15 +390,15 @@ pub(super) fn local<'a>(
     }
     match precision {
         Precision::Single => reached * splat(bells / ghosts, model) + canvas,
-        // By lists of blocks, of which a ghost has some that it hardly reaches.
-        Precision::Double => {
-            let side = (reached / ghosts).sqrt();
-            let side = side + f64::from((1u32 << block_shift(side)) - 1);
-            let listed = (ghosts * side * side).min(ghosts * pixels);
-            let slower = LISTED * bells / ghosts / in_gaussians(&Bell::Gaussian, precision);
-            listed * model.bell * slower + canvas
-        }
+        Precision::Double => listed(ghosts, reached.min(ghosts * pixels), bells / ghosts, model) + canvas,
     }
+}
+
+/// What ghosts of so many Gaussians each cost in lists of blocks, which hold some that they hardly reach.
+fn listed(ghosts: f64, reached: f64, bell: f64, model: &CostModel) -> f64 {
+    let side = (reached / ghosts.max(1.0)).sqrt();
+    let side = side + f64::from((1u32 << block_shift(side)) - 1);
+    ghosts * side * side * model.bell * LISTED * bell / in_gaussians(&Bell::Gaussian, Precision::Double)
 }
 
 /// What a bell costs that is drawn at one pixel, of as many Gaussians.
@@ -308,8 +407,12 @@ fn splat(in_gaussians: f64, model: &CostModel) -> f64 {
 }
 
 /// What a group that reaches so many pixels adds to a local layer, in nanoseconds.
-pub(super) fn reaching(group: &Group, reached: f64, model: &CostModel) -> f64 {
-    group.ghosts as f64 * model.quad + reached * splat(in_gaussians(&group.bell, Precision::Single), model)
+pub(super) fn reaching(group: &Group, reached: f64, floats: Precision, model: &CostModel) -> f64 {
+    let bells = match floats {
+        Precision::Single => reached * splat(in_gaussians(&group.bell, floats), model),
+        Precision::Double => listed(group.ghosts as f64, reached, in_gaussians(&group.bell, floats), model),
+    };
+    group.ghosts as f64 * model.quad + bells
 }
 
 /// How many times as long as by `direct` a bell takes in 64-bit floats where it comes from a list, a Gaussian: 9 to 11 on llvmpipe.

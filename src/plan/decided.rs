@@ -6,7 +6,8 @@ use glam::DVec2;
 use serde::{Serialize, Serializer};
 
 use super::layer::Told;
-use super::{Cost, Evaluator, Group, Lattice, Layer, Local, Modes, Precision, Prediction, Refusal, Series};
+use super::modes::Mode;
+use super::{Cost, Evaluator, Group, Lattice, Layer, Local, Modes, Precision, Prediction, Refusal, Series, amplitudes};
 use crate::problem::Problem;
 
 /// What was decided for a problem: the layers whose sum is the field, with the error and the cost that are expected.
@@ -19,7 +20,7 @@ pub struct Plan {
     /// The floats in which the summed ghosts are computed, where there are any.
     pub precision: Precision,
     /// The field's largest value or, where it is not known exactly, a lower bound of it, RGB; the field is computed in
-    /// units of it.
+    /// units of it, or of [`Plan::units`].
     pub scale: [f64; 3],
     /// Pixels, as columns and rows of the picture, at which the field was found large.
     pub peaks: Vec<[i32; 2]>,
@@ -50,6 +51,37 @@ impl Plan {
             costs: Vec::new(),
             refused: Vec::new(),
         }
+    }
+
+    /// Whether any of its layers is computed in 64-bit floats; then all are added up in them, and rounded once.
+    pub fn is_exact(&self) -> bool {
+        self.layers.iter().any(|layer| match layer {
+            Layer::Series(series) => series.precision == Precision::Double,
+            Layer::Direct(groups) => self.precision == Precision::Double && !groups.is_empty(),
+            Layer::Local(local) => local.precision == Precision::Double,
+        })
+    }
+
+    /// What the field is computed in units of on the device, RGB: its scale, or, where 64-bit floats compute it, the power of
+    /// two below that, by which to multiply costs no rounding.
+    pub fn units(&self) -> [f64; 3] {
+        // Of numbers that f32 holds to its last digit.
+        const SMALLEST: f64 = f32::MIN_POSITIVE as f64;
+        let below = |scale: f64| f64::from_bits(scale.max(SMALLEST).to_bits() & !((1 << 52) - 1));
+        if self.is_exact() { self.scale.map(below) } else { self.scale }
+    }
+
+    /// The modes that its series keeps in f64, in [`Plan::units`], harmonic by harmonic of x: those that it has computed, or else
+    /// computed now, ghost by ghost.
+    pub(crate) fn exact_modes(&self) -> Vec<Mode> {
+        let Some(series) = self.series() else { return Vec::new() };
+        let units = self.units();
+        let Some(modes) = &series.modes else {
+            return amplitudes::modes(self.problem.ghosts(), &series.groups, &series.counts, series.period, units);
+        };
+        let ratio = [0, 1, 2].map(|colour| self.scale[colour] / units[colour]);
+        let turned = |mode: Mode| [0, 1, 2].map(|colour| mode[colour].map(|term| term * ratio[colour]));
+        modes.kept(&series.counts).map(turned).collect()
     }
 
     /// The same plan with its series changed by hand; what it predicts stays as it was.

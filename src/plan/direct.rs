@@ -26,7 +26,7 @@ pub enum Precision {
     Double,
 }
 
-/// What the direct sum is off by at any pixel, at most, in the floats of either precision.
+/// What the direct sum is off by at any pixel, at most, in the floats of either precision; with 64 bits, before that is stored.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Bounds {
     pub single: f64,
@@ -36,7 +36,10 @@ pub(super) struct Bounds {
 impl Bounds {
     /// The precision that leaves a bound of at most so much, if only the larger one can; and its bound.
     pub fn within(self, budget: f64) -> (Precision, f64) {
-        if self.single <= budget { (Precision::Single, self.single) } else { (Precision::Double, self.double) }
+        match self.single <= budget {
+            true => (Precision::Single, self.single),
+            false => (Precision::Double, STORED + self.double),
+        }
     }
 }
 
@@ -56,8 +59,9 @@ pub(super) const HALF_A_UNIT: f64 = 0.5 * f32::EPSILON as f64;
 /// that tests/suite/rounding.rs has seen on Mesa's software renderer.
 pub(super) const PER_WEIGHT: f64 = 4.5e-7;
 
-/// What is left where all is f64: the field is stored in f32, and glare is its product with a scale that is rounded too.
-pub(super) const STORED: f64 = 3.0 * HALF_A_UNIT;
+/// What is left where all is f64: the field is rounded to f32, once, in units by which to multiply costs nothing. The field's
+/// largest value may be a little above the largest that was found.
+pub(super) const STORED: f64 = 1.25 * HALF_A_UNIT;
 
 /// And in f64, where functions are off by some units of 2⁻⁵³, and for each addition.
 const PER_WEIGHT_DOUBLE: f64 = 2e-15;
@@ -95,7 +99,7 @@ pub(super) fn bounds(problem: &Problem, weighed: &Weighed) -> Bounds {
         (0..cells.count * cells.count).map(|cell| sums.iter().map(|sums| sums[kind][cell]).sum()).fold(0.0, f64::max)
     };
     let additions = PER_ADDITION_DOUBLE * kept as f64;
-    Bounds { single: largest(0).max(PER_WEIGHT), double: STORED + additions + largest(1) }
+    Bounds { single: largest(0).max(PER_WEIGHT), double: additions + largest(1) }
 }
 
 /// What the sum costs at least, before it is planned.

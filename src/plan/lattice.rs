@@ -1,26 +1,38 @@
-//! The coarsest lattice that a cubic B-spline can carry the series on.
+//! The coarsest lattice that a B-spline can carry the series on.
 
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec2;
 
-use super::Group;
 use super::amplitudes::{Rgb, largest};
 use super::decay::Decay;
+use super::{Group, Precision, Request};
 use crate::frame::Frame;
-use crate::series::spline_error;
+use crate::series::{CUBIC, spline_error_of};
 use crate::{Error, Result};
 
 /// Nodes a half wave of the highest harmonic that are tried: from barely enough to plenty.
 const SPARSEST: f64 = 1.02;
 const DENSEST: f64 = 64.0;
 
-/// Most nodes along an axis: places on the lattice are kept in 32 bits, 12 of them for whole nodes.
-pub const MOST_NODES: u32 = 4000;
+/// Nodes that a pixel's B-spline has along each axis where 64-bit floats ask for more digits: with as high a power of the step
+/// the error falls.
+pub(crate) const DOUBLE_ORDER: u32 = 8;
 
-/// A lattice over the window of a picture. Node (1, 1) lies on the top left pixel; nodes count rightwards and downwards.
+/// The same in floats of a precision.
+pub(super) fn order_in(precision: Precision) -> u32 {
+    match precision {
+        Precision::Single => CUBIC,
+        Precision::Double => DOUBLE_ORDER,
+    }
+}
+
+/// A lattice over the window of a picture. Node (k, k) with k = order / 2 − 1 lies on the top left pixel; nodes count rightwards
+/// and downwards.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Lattice {
+    /// Nodes that a pixel's B-spline has along each axis: 4 for a cubic one.
+    pub order: u32,
     /// Distance from node to node along x and y.
     pub step: DVec2,
     /// Nodes along x and y.
@@ -56,66 +68,69 @@ impl Marginals {
     }
 
     /// A bound of the interpolation's error along an axis, with θ from node to node for the first harmonic.
-    fn error(&self, axis: usize, theta: f64) -> f64 {
+    fn error(&self, order: u32, axis: usize, theta: f64) -> f64 {
         let harmonics = (1..).zip(self.0[axis].iter().skip(1));
         let sum = harmonics.fold([0.0; 3], |sum, (n, held)| {
-            let error = spline_error(f64::from(n) * theta);
+            let error = spline_error_of(order, f64::from(n) * theta);
             [0, 1, 2].map(|colour| sum[colour] + held[colour] * error)
         });
         largest(sum)
     }
 
     /// The fewest nodes a half wave of the highest harmonic along an axis within the budget.
-    fn least(&self, axis: usize, degree: u32, budget: f64) -> f64 {
+    fn least(&self, order: u32, axis: usize, degree: u32, budget: f64) -> f64 {
         let (mut low, mut high) = (SPARSEST, DENSEST);
         for _ in 0..30 {
             let middle = 0.5 * (low + high);
             let theta = PI / (middle * f64::from(degree.max(1)));
-            if self.error(axis, theta) > budget { low = middle } else { high = middle }
+            if self.error(order, axis, theta) > budget { low = middle } else { high = middle }
         }
         high
     }
 }
 
-/// The coarsest lattice whose interpolation stays within the budget, or the one of a given oversampling.
+/// The coarsest lattice whose interpolation stays within the budget, or the one of the oversampling that is asked for.
 ///
 /// # Errors
-/// [`Error::Plan`] where it would have more than [`MOST_NODES`] along an axis, or where the oversampling is too little
-/// for a spline.
+/// [`Error::Plan`] where it would have more nodes along an axis than the request allows, or where the oversampling is too little for a
+/// spline.
 pub(super) fn coarsest(
+    precision: Precision,
     degree: [u32; 2],
     period: DVec2,
     marginals: &Marginals,
     frame: Frame,
-    oversampling: Option<f64>,
     budget: f64,
+    request: &Request,
 ) -> Result<Lattice> {
+    let Request { oversampling, most_nodes: most, .. } = *request;
     if let Some(nodes) = oversampling.filter(|nodes| !(SPARSEST..=f64::MAX).contains(nodes)) {
         return Err(Error::Plan(format!("{nodes} nodes a half wave are fewer than {SPARSEST}")));
     }
+    let order = order_in(precision);
     let (low, high) = frame.bounds();
     let extent = high - low;
     // The other axis adds about as much, and their product a little.
     let part = 0.49 * budget;
     let along = |axis: usize, period: f64, extent: f64| {
-        let over = oversampling.unwrap_or_else(|| marginals.least(axis, degree[axis], part));
+        let over = oversampling.unwrap_or_else(|| marginals.least(order, axis, degree[axis], part));
         step(degree[axis], period, extent, over)
     };
     let (step_x, over_x) = along(0, period.x, extent.x);
     let (step_y, over_y) = along(1, period.y, extent.y);
-    let nodes = |extent: f64, step: f64| (extent / step).floor() as u32 + 4;
+    let nodes = |extent: f64, step: f64| (extent / step).floor().min(f64::from(u32::MAX - order)) as u32 + order;
     let step = DVec2::new(step_x, step_y);
     let nodes = [nodes(extent.x, step_x), nodes(extent.y, step_y)];
-    if nodes.iter().any(|&nodes| nodes > MOST_NODES) {
+    if nodes.iter().any(|&nodes| nodes > most) {
         let [x, y] = nodes;
         return Err(Error::Plan(format!(
-            "a lattice of {x} x {y} nodes is beyond {MOST_NODES} a side, which is what grid can index; series and rows \
+            "a lattice of {x} x {y} nodes is beyond the {most} a side that a texture of this device has; series and rows \
              need none"
         )));
     }
     let theta = TAU * step / period;
-    let (x, y) = (marginals.error(0, theta.x), marginals.error(1, theta.y));
-    Ok(Lattice { step, nodes, oversampling: DVec2::new(over_x, over_y), error: x + y + x * y })
+    let (x, y) = (marginals.error(order, 0, theta.x), marginals.error(order, 1, theta.y));
+    Ok(Lattice { order, step, nodes, oversampling: DVec2::new(over_x, over_y), error: x + y + x * y })
 }
 
 /// The step from node to node for so many nodes a half wave of the highest harmonic, and these.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::{Evaluator, Group, Lattice, Local, Modes, Transform};
+use super::{Evaluator, Group, Lattice, Local, Modes, Precision, Transform};
 
 /// A part of the field, with the way that it is computed.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,6 +47,8 @@ impl Layer {
 pub struct Series {
     /// [`Evaluator::Series`], [`Evaluator::Rows`] or [`Evaluator::Grid`].
     pub evaluator: Evaluator,
+    /// The floats in which it is computed, from the spectrum to the sum.
+    pub precision: Precision,
     /// The period in x and y, in half picture heights.
     pub period: DVec2,
     /// How many harmonics of y are kept beside harmonic n of x; never growing, one at least.
@@ -76,6 +78,8 @@ impl Series {
 #[derive(serde::Serialize)]
 pub(super) struct Told {
     evaluator: Evaluator,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    precision: Option<Precision>,
     ghosts: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     terms: Option<usize>,
@@ -90,8 +94,14 @@ impl From<&Layer> for Told {
     fn from(layer: &Layer) -> Self {
         let ghosts = layer.groups().iter().map(|group| group.ghosts).sum();
         let terms = if let Layer::Series(series) = layer { Some(series.terms()) } else { None };
+        let precision = match layer {
+            Layer::Series(series) => Some(series.precision),
+            Layer::Local(local) => Some(local.precision),
+            // That of the plan.
+            Layer::Direct(_) => None,
+        };
         let local = if let Layer::Local(local) = layer { Some(local) } else { None };
         let (level, reached) = (local.map(|local| local.level), local.map(|local| local.reached));
-        Self { evaluator: layer.evaluator(), ghosts, terms, level, reached }
+        Self { evaluator: layer.evaluator(), precision, ghosts, terms, level, reached }
     }
 }

@@ -41,13 +41,15 @@ pub use crate::choices::Evaluator;
 pub use cost::{Cost, CostModel, GRID_PASSES};
 pub use decided::Plan;
 pub use direct::Precision;
-pub use gather::Transform;
-pub use lattice::{Lattice, MOST_NODES};
+pub use gather::{Gathering, Transform};
+pub(crate) use lattice::DOUBLE_ORDER;
+pub use lattice::Lattice;
 pub use layer::{Layer, Series};
 pub use local::Local;
 pub(crate) use local::{Area, LARGEST_POINT, block_shift};
 pub use modes::{Mode, Modes};
 pub use prediction::{Prediction, Source};
+pub(crate) use request::GHOSTS_A_ROUND;
 pub use request::Request;
 pub use search::{LOOSEST, plan_at_least, plan_within};
 pub use terms::Group;
@@ -59,6 +61,9 @@ use split::Apart;
 
 /// Highest harmonic that a plan may use along one axis.
 pub const HIGHEST_DEGREE: u32 = 4096;
+
+/// Tolerances from which on layers in 32-bit floats may be refused for what these cost.
+const BEYOND_SINGLE: f64 = 1e-4;
 
 /// An evaluator that a plan could not choose.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -250,7 +255,20 @@ impl Found {
     /// Plans several layers, where that is likely to be cheaper; and says whether there are such. What cannot be had was never
     /// asked for by that name.
     fn layers(&mut self, problem: &Arc<Problem>, survey: &Survey, request: &Request, series: &[Evaluator]) -> bool {
-        let plans: Vec<Plan> = match split::apart(problem, survey, request) {
+        // Where 32-bit floats are of no use, 64 may be.
+        self.layers_in(Precision::Single, problem, survey, request, series)
+            || request.tolerance < BEYOND_SINGLE && self.layers_in(Precision::Double, problem, survey, request, series)
+    }
+
+    fn layers_in(
+        &mut self,
+        floats: Precision,
+        problem: &Arc<Problem>,
+        survey: &Survey,
+        request: &Request,
+        series: &[Evaluator],
+    ) -> bool {
+        let plans: Vec<Plan> = match split::apart(problem, survey, request, floats) {
             Some(Apart::Series(survey)) => {
                 self.bound(&survey);
                 let wide = Wide::new(problem, &survey, request);

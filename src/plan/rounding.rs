@@ -69,6 +69,23 @@ pub(super) fn of_doubles(groups: &[Group], degree: [u32; 2]) -> f64 {
     groups.iter().map(one).sum()
 }
 
+/// What f64 loses of a series, from the groups' modes to the sum, before it is stored.
+///
+/// Phases, waves and sums are off by some units of 2⁻⁵³ for each harmonic that they go through, of what the coefficients of
+/// each bell add up to at most; interpolating adds a few.
+pub(super) fn of_exact(groups: &[Group], degree: [u32; 2]) -> f64 {
+    const UNIT: f64 = 0.5 * f64::EPSILON;
+    let [n, m] = degree.map(f64::from);
+    let steps = 60.0 + 12.0 * (n + m);
+    // For a bell that ends in a jump the coefficients add up to ever more, with the root of the degree.
+    let gain = |group: &Group| match group.bell {
+        Bell::Gaussian | Bell::VonMises(_) | Bell::SineGaussian(_) => 1.5,
+        Bell::CosineSquared | Bell::Parabola | Bell::Paraboloid => 4.0,
+        _ => 4.0 + 2.0 * (n + m).sqrt(),
+    };
+    of_doubles(groups, degree) + groups.iter().map(|group| UNIT * steps * gain(group) * group.weight).sum::<f64>()
+}
+
 /// Of that, what comes of storing alone: half a unit in the last place of each result that one pass leaves to the next. For
 /// `direct` these are the ghosts; for a series its terms and the harmonics of both axes; then the profiles of `rows`; and
 /// then `grid`'s lattice, cells and strips.

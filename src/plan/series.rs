@@ -27,6 +27,8 @@ pub(super) struct Wide {
     amplitudes: Amplitudes,
     /// A bound of what lies beyond the modes.
     beyond: f64,
+    /// What gathering ghosts left out.
+    gathering: f64,
 }
 
 impl Wide {
@@ -42,6 +44,8 @@ impl Wide {
         let period = request.period.unwrap_or_else(|| period::shortest(&survey.reaches, usable * share::PERIODISATION));
         let mut groups = survey.groups.clone();
         let counts = terms::fewest(&mut groups, period, usable * BEYOND, &survey.effort).ok()?;
+        let gathering =
+            gather::choose_in_doubles(&mut groups, period, share::GATHERING * request.tolerance, amplitudes::MODE);
         // By weights there may be no series at all.
         let needed = rounding > (1.0 - NEEDED) * request.tolerance;
         let afforded = survey.effort.affords(amplitudes::work(&groups, &counts));
@@ -50,7 +54,14 @@ impl Wide {
         }
         let amplitudes = Amplitudes::new(problem.ghosts(), &groups, &counts, period, survey.weighed.scale);
         let beyond = terms::error(&groups, period, &counts);
-        Some(Self { period, periodisation: period::error(&survey.reaches, period), groups, amplitudes, beyond })
+        Some(Self {
+            period,
+            periodisation: period::error(&survey.reaches, period),
+            groups,
+            amplitudes,
+            beyond,
+            gathering,
+        })
     }
 
     /// What f32 costs with all of the modes.
@@ -77,7 +88,8 @@ impl Wide {
         }
         let marginals = Marginals::of(self.amplitudes.marginals(&counts));
         let (modes, strength) = (Some(self.amplitudes.modes().clone()), Some(self.amplitudes.strength(&counts)));
-        Terms { groups, modes, strength, marginals: Some(marginals), truncation: self.beyond + left, counts }
+        let (marginals, gathering) = (Some(marginals), self.gathering);
+        Terms { groups, modes, strength, marginals, truncation: self.beyond + left, counts, gathering }
     }
 }
 
@@ -92,11 +104,14 @@ struct Terms {
     marginals: Option<Marginals>,
     /// What is left out.
     truncation: f64,
+    /// What gathering left out, where the modes were computed.
+    gathering: f64,
 }
 
 /// What a series is planned from.
 struct Brief<'a> {
     evaluator: Evaluator,
+    precision: Precision,
     survey: &'a Survey,
     wide: Option<&'a Wide>,
     frame: Frame,
@@ -114,7 +129,7 @@ struct Brief<'a> {
 /// # Errors
 /// [`Error::Plan`] where there is no such series.
 pub(super) fn plan_series(
-    evaluator: Evaluator,
+    (evaluator, precision): (Evaluator, Precision),
     survey: &Survey,
     wide: Option<&Wide>,
     frame: Frame,
@@ -137,7 +152,7 @@ pub(super) fn plan_series(
     check::copies(period, periodisation)?;
     let predicted = Prediction { periodisation, ..predicted };
     let excess = excess(&predicted, usable);
-    let brief = Brief { evaluator, survey, wide, frame, request, period, predicted, usable, excess };
+    let brief = Brief { evaluator, precision, survey, wide, frame, request, period, predicted, usable, excess };
     if evaluator != Evaluator::Grid {
         return brief.finish(brief.terms(share::TRUNCATION)?, None);
     }
@@ -182,8 +197,8 @@ impl Brief<'_> {
         let marginals = marginals.unwrap_or_else(|| Marginals::by_weights(&terms.groups, degree, self.period));
         // Where the series is given there may be nothing left: then a lattice is to cost a little of what rounding does.
         let budget = interpolation * self.usable.max(if self.given() { 0.1 * self.predicted.single() } else { 0.0 });
-        let over = self.request.oversampling;
-        let lattice = lattice::coarsest(degree, self.period, &marginals, self.frame, over, budget)?;
+        let lattice =
+            lattice::coarsest(self.precision, degree, self.period, &marginals, self.frame, budget, self.request)?;
         self.finish(terms, Some(lattice))
     }
 
@@ -198,11 +213,21 @@ impl Brief<'_> {
                     Some(degree) => terms::rectangle(&mut groups, degree),
                     None => terms::fewest(&mut groups, self.period, truncation, &self.survey.effort)?,
                 };
-                Terms { groups, counts, modes: None, strength: None, marginals: None, truncation: f64::NAN }
+                Terms {
+                    groups,
+                    counts,
+                    modes: None,
+                    strength: None,
+                    marginals: None,
+                    truncation: f64::NAN,
+                    gathering: 0.0,
+                }
             }
         };
         let count: usize = terms.counts.iter().map(|&count| count as usize).sum();
         let most = self.request.most_terms;
+        // A term takes as much again in 64-bit floats.
+        let most = if self.precision == Precision::Double { most / 2 } else { most };
         if count > most {
             return Err(Error::Plan(format!("the series would have {count} terms, and {most} fit on the device")));
         }
@@ -214,18 +239,23 @@ impl Brief<'_> {
 
     /// The series, with all that it adds to the error.
     fn finish(&self, terms: Terms, lattice: Option<Lattice>) -> Result<(Series, Prediction)> {
-        let Terms { mut groups, counts, modes, strength, marginals: _, truncation } = terms;
+        let Terms { mut groups, counts, modes, strength, marginals: _, truncation, gathering } = terms;
         let interpolation = lattice.map_or(0.0, |lattice| lattice.error);
-        let mut predicted = Prediction { truncation, interpolation, ..self.predicted };
-        if let Some(strength) = strength {
+        let mut predicted = Prediction { truncation, interpolation, gathering, ..self.predicted };
+        if self.precision == Precision::Single
+            && let Some(strength) = strength
+        {
             // What was planned with may have been a bound by weights.
             let degree = [counts.len() as u32 - 1, counts[0] - 1];
             let known = rounding::of_modes(self.evaluator, &strength, degree) + rounding::of_doubles(&groups, degree);
             predicted = predicted.with_single((known + self.survey.beside.rounding).min(predicted.single()));
         }
         let Request { tolerance, ref cost_model, .. } = *self.request;
-        predicted.gathering = gather::choose(&mut groups, self.period, tolerance, &predicted, cost_model);
-        let (evaluator, period) = (self.evaluator, self.period);
-        Ok((Series { evaluator, period, counts: counts.into(), groups, modes, lattice }, predicted))
+        // In 64-bit floats every ghost meets every mode, but for what was gathered when the modes were looked at.
+        if self.precision == Precision::Single {
+            predicted.gathering += gather::choose(&mut groups, self.period, tolerance, &predicted, cost_model);
+        }
+        let (evaluator, precision, period) = (self.evaluator, self.precision, self.period);
+        Ok((Series { evaluator, precision, period, counts: counts.into(), groups, modes, lattice }, predicted))
     }
 }

@@ -11,6 +11,7 @@ use glam::DVec2;
 
 use super::candidate::{Beside, Survey, made, rounds};
 use super::decay::Decay;
+use super::direct::{HALF_A_UNIT, STORED};
 use super::weigh::Weighed;
 use super::{
     CostModel, Evaluator, Group, Layer, Plan, Precision, Prediction, Request, Transform, cost, direct, gather, local,
@@ -44,12 +45,14 @@ pub(super) enum Apart {
 }
 
 /// Layers that are likely to be cheaper than any single evaluator; none where there are no such.
-pub(super) fn apart(problem: &Arc<Problem>, survey: &Survey, request: &Request) -> Option<Apart> {
+///
+/// All of them in 64-bit floats, the sum and the series as well, or in those that do beside a series in 32.
+pub(super) fn apart(problem: &Arc<Problem>, survey: &Survey, request: &Request, floats: Precision) -> Option<Apart> {
     // Everything is to be a series, or in one period.
     if request.evaluator.is_some() || request.degree.is_some() || request.period.is_some() {
         return None;
     }
-    let Cut { mut ways, series } = Cutting::new(problem, survey, request)?.cheapest()?;
+    let Cut { mut ways, series } = Cutting::new(problem, survey, request, floats)?.cheapest()?;
     if !series {
         ways.iter_mut().filter(|way| **way == Way::Series).for_each(|way| *way = Way::Everywhere);
     }
@@ -64,8 +67,11 @@ pub(super) fn apart(problem: &Arc<Problem>, survey: &Survey, request: &Request) 
     let [left, everywhere, reaching] = [Way::Series, Way::Everywhere, Way::Reaching].map(of);
     let everywhere_weighed = only(&survey.weighed, &everywhere);
     let bounds = direct::bounds(problem, &everywhere_weighed);
-    let (precision, rounding) = bounds.within(SUMMED * request.tolerance);
-    let mut beside = Beside { precision, ..Beside::default() };
+    let exact = floats == Precision::Double;
+    let (precision, rounding) = if exact { (floats, bounds.double) } else { bounds.within(SUMMED * request.tolerance) };
+    let mut beside = Beside { precision, exact, ..Beside::default() };
+    // What is stored is that of the sum, once.
+    let stored = if exact { STORED } else { 0.0 };
     if rounds(everywhere.iter().map(|group| group.ghosts).sum()) > request.loop_rounds {
         return None;
     }
@@ -74,11 +80,16 @@ pub(super) fn apart(problem: &Arc<Problem>, survey: &Survey, request: &Request) 
         beside.rounding += rounding;
     }
     if !reaching.is_empty() {
-        let left_over = request.tolerance - survey.weighed.dropped_error - beside.rounding;
-        let part = if series { LOCAL * request.tolerance } else { LOCAL_ALONE * left_over };
+        let left_over = request.tolerance - survey.weighed.dropped_error - beside.rounding - stored;
+        let part = match (series, exact) {
+            (true, false) => LOCAL * request.tolerance,
+            (true, true) => LOCAL * left_over,
+            (false, _) => LOCAL_ALONE * left_over,
+        };
         survey.effort.spend(local::work(reaching.iter().map(|group| group.ghosts).sum())).ok()?;
         let weighed = only(&survey.weighed, &reaching);
-        let bounded = local::layer(problem, &weighed, &reaching, part, request.loop_rounds).ok()?;
+        let (own, given) = if exact { ((part, 0.0), Some(floats)) } else { ((part, STORED), None) };
+        let bounded = local::layer(problem, &weighed, &reaching, own, given, request.loop_rounds).ok()?;
         // The first layer gives the plan its name.
         beside.layers.insert(0, Layer::Local(bounded.local));
         (beside.rounding, beside.cut) = (beside.rounding + bounded.rounding, bounded.cut);
@@ -94,9 +105,10 @@ pub(super) fn apart(problem: &Arc<Problem>, survey: &Survey, request: &Request) 
 
 /// The plan of layers without a series.
 fn sums(problem: &Arc<Problem>, survey: &Survey, beside: Beside, request: &Request) -> Plan {
-    let Beside { layers, precision, rounding, cut } = beside;
+    let Beside { layers, precision, rounding, cut, exact } = beside;
     let weighed = &survey.weighed;
-    let storage = (0.5 * f64::from(f32::EPSILON) * layers.len() as f64).min(rounding);
+    let rounding = if exact { rounding + STORED } else { rounding };
+    let storage = if exact { STORED } else { (HALF_A_UNIT * layers.len() as f64).min(rounding) };
     let predicted = Prediction {
         dropped: weighed.dropped_error,
         cut,
@@ -137,6 +149,7 @@ struct Cutting<'a> {
     groups: &'a [Group],
     frame: Frame,
     model: &'a CostModel,
+    floats: Precision,
     period: DVec2,
     /// The modes that each of them needs; none where no series can have it.
     needs: Vec<Option<Vec<u32>>>,
@@ -146,7 +159,7 @@ struct Cutting<'a> {
 
 impl<'a> Cutting<'a> {
     /// None where looking at the groups costs too much.
-    fn new(problem: &Problem, survey: &'a Survey, request: &'a Request) -> Option<Self> {
+    fn new(problem: &Problem, survey: &'a Survey, request: &'a Request, floats: Precision) -> Option<Self> {
         let (groups, model) = (&survey.groups[..], &request.cost_model);
         if groups.len() < 2 {
             return None;
@@ -167,10 +180,10 @@ impl<'a> Cutting<'a> {
         let level = LOCAL * request.tolerance / CROWDING;
         let reaching = groups.iter().map(|group| {
             let reached = local::reached_by(problem, &survey.weighed, group, level);
-            cost::reaching(group, reached, model)
+            cost::reaching(group, reached, floats, model)
         });
         let reaching = reaching.collect();
-        Some(Self { groups, frame: problem.frame(), model, period, needs, reaching })
+        Some(Self { groups, frame: problem.frame(), model, floats, period, needs, reaching })
     }
 
     /// The cheapest cut, where that is cheaper than any single evaluator.
@@ -204,7 +217,7 @@ impl<'a> Cutting<'a> {
         let mut costs = vec![0.0; order.len() + 1];
         let mut summed = cost::Summed::default();
         for (cut, &index) in order.iter().enumerate().rev() {
-            summed.add(&self.groups[index], Precision::Single);
+            summed.add(&self.groups[index], self.floats);
             costs[cut] = summed.nanoseconds(self.frame, self.model);
         }
         costs
@@ -221,15 +234,15 @@ impl<'a> Cutting<'a> {
             union.iter_mut().zip(needed).for_each(|(count, &needed)| *count = needed.max(*count));
             let degree = [needed.len() as u32 - 1, needed[0] - 1];
             let group = Group { degree, members: Arc::default(), ..self.groups[index].clone() };
-            spectrum += gather::cost(&group, &Transform::Dispatch, self.model);
-            costs[cut] = spectrum + cheapest_field(&union, self.period, self.frame, self.model);
+            spectrum += gather::likely(&group, self.model);
+            costs[cut] = spectrum + cheapest_field(&union, self.period, self.frame, self.floats, self.model);
         }
         costs
     }
 
     /// Whether a group is cheaper where it reaches, or at every pixel.
     fn way(&self, index: usize) -> Way {
-        let everywhere = cost::direct([&self.groups[index]], Precision::Single, self.frame, self.model);
+        let everywhere = cost::direct([&self.groups[index]], self.floats, self.frame, self.model);
         if self.reaching[index] <= everywhere { Way::Reaching } else { Way::Everywhere }
     }
 
@@ -241,7 +254,7 @@ impl<'a> Cutting<'a> {
     fn add(&self, summed: &mut Summed, index: usize) {
         match self.way(index) {
             Way::Reaching => summed.reaching = Some(summed.reaching.unwrap_or(0.0) + self.reaching[index]),
-            _ => summed.everywhere.get_or_insert_default().add(&self.groups[index], Precision::Single),
+            _ => summed.everywhere.get_or_insert_default().add(&self.groups[index], self.floats),
         }
     }
 
@@ -260,12 +273,15 @@ struct Summed {
 }
 
 /// What the field of so many terms is estimated to cost by the evaluator that is best at it, in nanoseconds.
-fn cheapest_field(counts: &[u32], period: DVec2, frame: Frame, model: &CostModel) -> f64 {
+fn cheapest_field(counts: &[u32], period: DVec2, frame: Frame, floats: Precision, model: &CostModel) -> f64 {
     let (low, high) = frame.bounds();
     let degree = [counts.len() as u32 - 1, counts[0] - 1];
     let nodes = |k: usize| 2.0 * NODES * f64::from(degree[k].max(1)) * (high - low)[k] / period[k] + 4.0;
     let size =
         cost::Size { terms: counts.iter().map(|&count| f64::from(count)).sum(), degree, nodes: [nodes(0), nodes(1)] };
     let series = [Evaluator::Series, Evaluator::Rows, Evaluator::Grid];
-    series.into_iter().map(|evaluator| cost::field(evaluator, &size, frame, model)).fold(f64::INFINITY, f64::min)
+    series
+        .into_iter()
+        .map(|evaluator| cost::field(evaluator, floats, &size, frame, model))
+        .fold(f64::INFINITY, f64::min)
 }

@@ -6,36 +6,56 @@ use super::settings::Settings;
 use crate::choices::Normalize;
 use crate::gpu::composite::{Composite, Variant};
 use crate::gpu::field::Source;
-use crate::gpu::layout::{DirectGhost, DoubleGhost, SpectralGhost};
-use crate::plan::{self, Evaluator, Group, Layer, Local, Modes, Plan, Precision, Series, Transform};
+use crate::gpu::layout::{
+    Binding, DirectGhost, DoubleGhost, NORMALIZE_CLAMP, NORMALIZE_MINMAX, NORMALIZE_NONE, PROFILE_HALVINGS,
+    SpectralGhost,
+};
+use crate::plan::{self, Evaluator, Group, Layer, Local, Mode, Modes, Plan, Precision, Series};
 use crate::scene::Ghost;
-use crate::series::moments::{Cells, Point, Sums};
-use crate::series::{Bell, Distinct, phase};
+use crate::series::{Bell, Distinct, Profile, phase};
 
-/// A sum of layers, one of them local, and one that is missing.
+// A profile that is not given at its centre has a row more.
+const _: () = assert!(Profile::MOST_ROWS < 1 << PROFILE_HALVINGS);
+
+/// A sum of layers, one of them local, and one that is missing; and the local one, in 32-bit floats and in 64.
 const LAYERS: &str = "\"evaluators/layers.glsl\"";
 const NONE: &str = "\"evaluators/none.glsl\"";
+const LOCAL: [&str; 2] = ["\"evaluators/local.glsl\"", "\"evaluators/local_double.glsl\""];
 
 /// The GLSL function that a plan's evaluator has readied, `direct` beside it where some ghosts are summed; there may be too
 /// many of them for a uniform block.
 pub(super) fn source(plan: &Plan, many_ghosts: bool) -> Source {
     let double = plan.precision == Precision::Double;
     let direct = if double { "\"evaluators/direct_double.glsl\"" } else { "\"evaluators/direct.glsl\"" };
-    let summed = |evaluator| Source { bell: Some(bell_file(plan)), many_ghosts, double, ..Source::of(evaluator) };
-    let series = plan.series().map(|series| match series.evaluator {
-        Evaluator::Series => "\"evaluators/series.glsl\"",
-        Evaluator::Rows => "\"evaluators/rows.glsl\"",
-        _ => "\"evaluators/grid.glsl\"",
-    });
+    let exact = plan.is_exact();
+    let of = |evaluator| Source { exact, ..Source::of(evaluator) };
+    let summed = |evaluator| Source { bell: Some(bell_file(plan)), many_ghosts, double, ..of(evaluator) };
+    let series = plan.series().map(series_file);
+    let local = LOCAL[usize::from(plan.local().is_some_and(|local| local.precision == Precision::Double))];
     let has_direct = plan.layers().iter().any(|layer| matches!(layer, Layer::Direct(_)));
     match (series, has_direct, plan.local().is_some()) {
-        (Some(series), false, false) => Source::of(series),
-        (Some(series), true, false) => Source { parts: Some([series, direct]), ..summed("\"evaluators/split.glsl\"") },
+        (Some(series), false, false) => of(series),
+        (Some(series), true, false) => {
+            Source { parts: Some([series, direct, NONE]), ..summed("\"evaluators/split.glsl\"") }
+        }
         (None, _, false) => summed(direct),
-        (None, false, true) => Source::of("\"evaluators/local.glsl\""),
-        (None, true, true) => Source { parts: Some([NONE, direct]), ..summed(LAYERS) },
-        (Some(series), true, true) => Source { parts: Some([series, direct]), ..summed(LAYERS) },
-        (Some(series), false, true) => Source { parts: Some([series, NONE]), ..Source::of(LAYERS) },
+        // Rounded as it is drawn.
+        (None, false, true) => Source::of(LOCAL[0]),
+        (None, true, true) => Source { parts: Some([NONE, direct, local]), ..summed(LAYERS) },
+        (Some(series), true, true) => Source { parts: Some([series, direct, local]), ..summed(LAYERS) },
+        (Some(series), false, true) => Source { parts: Some([series, NONE, local]), ..of(LAYERS) },
+    }
+}
+
+/// The GLSL function of a series.
+fn series_file(series: &Series) -> &'static str {
+    match (series.evaluator, series.precision) {
+        (Evaluator::Series, Precision::Single) => "\"evaluators/series.glsl\"",
+        (Evaluator::Rows, Precision::Single) => "\"evaluators/rows.glsl\"",
+        (_, Precision::Single) => "\"evaluators/grid.glsl\"",
+        (Evaluator::Series, Precision::Double) => "\"evaluators/series_double.glsl\"",
+        (Evaluator::Rows, Precision::Double) => "\"evaluators/rows_double.glsl\"",
+        (_, Precision::Double) => "\"evaluators/grid_double.glsl\"",
     }
 }
 
@@ -66,12 +86,12 @@ pub(super) fn variant(source: Source, settings: &Settings) -> Variant {
     Variant { source, normalize: normalize(settings), take_light, straight }
 }
 
-/// How values become glare, by its number in `shared/normalized.glsl`.
-pub(super) fn normalize(settings: &Settings) -> &'static str {
+/// How values become glare.
+pub(super) fn normalize(settings: &Settings) -> Binding {
     match settings.normalize {
-        Normalize::None => "0",
-        Normalize::Clamp => "1",
-        Normalize::Minmax => "2",
+        Normalize::None => NORMALIZE_NONE,
+        Normalize::Clamp => NORMALIZE_CLAMP,
+        Normalize::Minmax => NORMALIZE_MINMAX,
     }
 }
 
@@ -88,16 +108,6 @@ pub(super) fn spectral_ghosts(plan: &Plan, period: DVec2, members: &[u32]) -> Ve
         }
     };
     members.iter().map(convert).collect()
-}
-
-/// The sums over the ghosts of a group, gathered from the moments of cells.
-pub(super) fn gathered(plan: &Plan, period: DVec2, group: &Group, cells: &Cells) -> Vec<Sums> {
-    let point = |k: usize| {
-        let ghost = &plan.problem().ghosts()[group.members[k] as usize];
-        let turns = ghost.center / period;
-        Point { turns: (turns - turns.floor()).to_array(), weight: weight(ghost, plan) }
-    };
-    cells.sums(group.members.len(), point, group.degree)
 }
 
 /// The ghosts that the plan sums directly, as the shader takes them, a list for each kind of bell; and the parameters of their
@@ -144,19 +154,19 @@ pub(super) fn double_ghost(ghost: &Ghost, weight: [f64; 3], bell: u32) -> Double
     DoubleGhost { center: ghost.center.to_array(), size: ghost.size.to_array(), weight, bell, pad: 0 }
 }
 
-/// The coefficients that the ghosts of a group share, as the spectrum takes them; none where each has its own.
-pub(super) fn table(series: &Series, group: &Group) -> Option<Vec<[f32; 4]>> {
-    let shape = group.bell.shape();
+/// The coefficients of a group's bell at one size, as the spectrum takes them.
+pub(super) fn table(series: &Series, group: &Group, size: DVec2) -> Vec<[f32; 4]> {
     let single = |coefficient: [f64; 4]| coefficient.map(|x| x as f32);
-    let table = || shape.modes().table(&series.counts, group.smallest / series.period);
-    let tabulated = shape.tabulated() || group.transform != Transform::Dispatch;
-    tabulated.then(|| table().into_iter().map(single).collect())
+    group.bell.shape().modes().table(&series.counts, size / series.period).into_iter().map(single).collect()
 }
 
 /// The modes that the series keeps of those that the plan has computed, as the spectrum has them: three vec4 a mode.
-pub(super) fn terms(series: &Series, modes: &Modes) -> Vec<[f32; 4]> {
+pub(super) fn terms(plan: &Plan, series: &Series, modes: &Modes) -> Vec<[f32; 4]> {
+    let (scale, units) = (plan.scale, plan.units());
+    let ratio = [0, 1, 2].map(|colour| scale[colour] / units[colour]);
     let single = |value: f64| value.clamp(f64::from(f32::MIN), f64::from(f32::MAX)) as f32;
-    modes.kept(&series.counts).flatten().map(|term| term.map(single)).collect()
+    let turned = |mode: Mode| [0, 1, 2].map(|colour| mode[colour].map(|term| single(term * ratio[colour])));
+    modes.kept(&series.counts).flat_map(turned).collect()
 }
 
 /// The composite's uniforms.
@@ -164,7 +174,7 @@ pub(super) fn uniforms(plan: &Plan, settings: &Settings) -> Composite {
     let rgb = |v: [f64; 3], w: f64| [v[0] as f32, v[1] as f32, v[2] as f32, w as f32];
     let constant = if settings.normalize == Normalize::Minmax { [0.0; 3] } else { settings.constant };
     Composite {
-        scale: rgb(plan.scale, 0.0),
+        scale: rgb(plan.units(), 0.0),
         constant: rgb(constant, 0.0),
         light_gain: rgb(settings.light_gain, 1.0),
         luminance: rgb(settings.emission.weights.map(f64::from), settings.threshold),
@@ -175,5 +185,17 @@ pub(super) fn uniforms(plan: &Plan, settings: &Settings) -> Composite {
 }
 
 pub(super) fn weight(ghost: &Ghost, plan: &Plan) -> [f64; 3] {
-    plan::weight(ghost, plan.scale)
+    plan::weight(ghost, plan.units())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::evaluators::RUNS;
+
+    #[test]
+    fn every_kind_of_bell_has_its_run() {
+        let last = Bell::examples().iter().map(Bell::kind).max().unwrap();
+        assert!((last as usize) + 1 < RUNS, "`direct` has no run for a bell of kind {last}");
+    }
 }

@@ -14,6 +14,7 @@ use crate::scene::Ghost;
 use crate::series::{Bell, Distinct};
 
 const _: () = assert!(plan::LARGEST_POINT as i32 == crate::gpu::layout::LARGEST_POINT);
+const _: () = assert!(plan::GHOSTS_A_ROUND == crate::gpu::evaluators::STEP);
 
 /// A ghost with what is known of it.
 struct Placed<'a> {

@@ -7,9 +7,12 @@ use glam::DVec2;
 
 use crate::frame::{Frame, Window};
 use crate::gpu::evaluators::LatticeTile;
-use crate::gpu::layout::Knots;
-use crate::plan::Lattice;
-use crate::series::phase;
+use crate::gpu::exact::{self, ExactTile};
+use crate::gpu::layout::{KNOT_BITS, Knots};
+use crate::plan::{DOUBLE_ORDER, Lattice};
+use crate::series::{phase, spline_gains, waves};
+
+const _: () = assert!(DOUBLE_ORDER == exact::ORDER);
 
 /// The largest tile: 4 Mpx, 64 MiB for each texture of RGBA f32.
 pub(super) const PIXELS: usize = 4 << 20;
@@ -17,10 +20,14 @@ pub(super) const PIXELS: usize = 4 << 20;
 /// Bells that one draw may evaluate.
 pub(super) const BELLS: usize = 20_000_000_000;
 
-/// Splits a window into tiles of at most `side` pixels a side and `pixels` in all; whole rows where possible.
-pub(super) fn split(window: Window, side: u32, pixels: usize) -> Vec<Window> {
-    let width = window.width.min(side).min(u32::try_from(pixels).unwrap_or(u32::MAX)).max(1);
-    let height = ((pixels / width as usize) as u32).clamp(1, side);
+/// Most nodes along an axis that places in 32 bits tell apart, the first and the last of which may lie a pixel outside.
+const MOST_NODES: u32 = 4000;
+const _: () = assert!(MOST_NODES < (1 << (32 - KNOT_BITS)) - 1);
+
+/// Splits a window into tiles of at most so many columns and rows, and `pixels` in all; whole rows where possible.
+pub(super) fn split(window: Window, [columns, rows]: [u32; 2], pixels: usize) -> Vec<Window> {
+    let width = window.width.min(columns).min(u32::try_from(pixels).unwrap_or(u32::MAX)).max(1);
+    let height = u32::try_from(pixels / width as usize).unwrap_or(u32::MAX).clamp(1, rows);
     let mut tiles = Vec::new();
     for y in (0..window.height).step_by(height as usize) {
         for x in (0..window.width).step_by(width as usize) {
@@ -40,10 +47,29 @@ pub(super) fn phases(count: u32, position: impl Fn(f64) -> f64, period: f64) -> 
     (0..count).map(|index| phase(position(f64::from(index)), period)).collect()
 }
 
+/// The most columns and rows of a tile whose lattice a shader can index, and textures of so many texels a side hold: three of
+/// them for each node of a row.
+pub(super) fn sides_on(lattice: &Lattice, frame: Frame, texture_size: u32) -> [u32; 2] {
+    let pitch = (frame.pixel_sides() / lattice.step).to_array();
+    let most = [texture_size / 3, texture_size].map(|most| f64::from(most.min(MOST_NODES)));
+    // So many nodes hold a pixel, and rounding may ask for one more.
+    let hold = f64::from(lattice.order + 1);
+    [0, 1].map(|axis| ((most[axis] - hold) / pitch[axis]).floor().max(0.0) as u32).map(|side| side.saturating_add(1))
+}
+
+/// The same positions in periods, within half of one.
+pub(super) fn turns(count: u32, position: impl Fn(f64) -> f64, period: f64) -> Vec<f64> {
+    let turns = |index| position(f64::from(index)) / period;
+    (0..count).map(|index| turns(index) - turns(index).round()).collect()
+}
+
 /// The lattice's nodes that a tile needs, and where its columns and rows lie among them.
 pub(super) struct Nodes {
-    phases: [Vec<u32>; 2],
-    steps: [u32; 2],
+    first: [f64; 2],
+    counts: [u32; 2],
+    origin: DVec2,
+    step: DVec2,
+    period: DVec2,
     knots: [Knots; 2],
     height: u32,
 }
@@ -54,34 +80,58 @@ impl Nodes {
         let origin = frame.position(f64::from(frame.window.x), f64::from(frame.window.y));
         let pixel = frame.pixel_sides();
         let [pitch_x, pitch_y] = (pixel / lattice.step).to_array().map(Pitch::new);
-        let columns = pitch_x.span(tile.x - frame.window.x, tile.width);
-        let rows = pitch_y.span(tile.y - frame.window.y, tile.height);
+        let columns = pitch_x.span(lattice.order, tile.x - frame.window.x, tile.width);
+        let rows = pitch_y.span(lattice.order, tile.y - frame.window.y, tile.height);
         // The step that the pitch stands for exactly; it differs from the plan's by rounding.
         let step = pixel / DVec2::new(pitch_x.nodes(), pitch_y.nodes());
-        let node_phases = |span: &Span, position: &dyn Fn(f64) -> f64, period: f64| {
-            phases(span.nodes, |index| position(span.first as f64 + index - 1.0), period)
-        };
-        let x = |k: f64| origin.x + k * step.x;
-        let y = |k: f64| origin.y - k * step.y;
+        // The second of four nodes is the last that is not beyond the pixel, the fourth of eight.
+        let before = f64::from(lattice.order / 2 - 1);
         Self {
-            phases: [node_phases(&columns, &x, period.x), node_phases(&rows, &y, period.y)],
-            steps: [phase(step.x, period.x), phase(step.y, period.y)],
+            first: [columns.first as f64 - before, rows.first as f64 - before],
+            counts: [columns.nodes, rows.nodes],
+            origin,
+            step,
+            period,
             knots: [columns.knots, rows.knots],
             height: tile.height,
         }
     }
 
-    pub fn tile(&self) -> LatticeTile<'_> {
-        LatticeTile {
-            node_phases: [&self.phases[0], &self.phases[1]],
-            steps: self.steps,
-            knots: self.knots,
-            height: self.height,
-        }
+    /// Where a node lies along an axis.
+    fn position(&self, axis: usize, index: f64) -> f64 {
+        let away = (self.first[axis] + index) * self.step[axis];
+        self.origin[axis] + if axis == 0 { away } else { -away }
+    }
+
+    /// How many nodes there are along an axis.
+    pub fn count(&self, axis: usize) -> usize {
+        self.counts[axis] as usize
+    }
+
+    /// The nodes' phases along an axis.
+    pub fn phases(&self, axis: usize) -> Vec<u32> {
+        phases(self.counts[axis], |index| self.position(axis, index), self.period[axis])
+    }
+
+    /// What a lattice in 32-bit floats takes beside phases.
+    pub fn tile<'a>(&self, node_phases: [&'a [u32]; 2]) -> LatticeTile<'a> {
+        let steps = [phase(self.step.x, self.period.x), phase(self.step.y, self.period.y)];
+        LatticeTile { node_phases, steps, knots: self.knots, height: self.height }
+    }
+
+    /// And what one in 64-bit floats does.
+    pub fn exact_tile(&self) -> ExactTile {
+        ExactTile { knots: self.knots, height: self.height }
+    }
+
+    /// cos and sin of the harmonics at the nodes along an axis, divided by what the B-spline makes of them.
+    pub fn waves(&self, axis: usize, degree: u32, order: u32) -> Vec<[f64; 2]> {
+        let gains = spline_gains(order, degree, self.step[axis] / self.period[axis]);
+        waves(&turns(self.counts[axis], |index| self.position(axis, index), self.period[axis]), &gains)
     }
 }
 
-/// Nodes from pixel to pixel, in 2⁻²⁰ of a node.
+/// Nodes from pixel to pixel, with [`KNOT_BITS`] bits after the point.
 #[derive(Clone, Copy)]
 struct Pitch(u64);
 
@@ -95,8 +145,7 @@ struct Span {
 }
 
 impl Pitch {
-    /// Bits after the point: the 12 before it suffice for [`crate::plan::MOST_NODES`].
-    const BITS: u32 = 20;
+    const BITS: u32 = KNOT_BITS;
 
     /// Rounded so that the nodes lie closer together than the plan wants, never farther apart.
     fn new(nodes: f64) -> Self {
@@ -108,12 +157,13 @@ impl Pitch {
     }
 
     /// For `count` pixels, the first of them `from` pixels after the lattice's origin.
-    fn span(self, from: i32, count: u32) -> Span {
+    fn span(self, order: u32, from: i32, count: u32) -> Span {
         let place = |index: u32| (from as u64 + u64::from(index)) * self.0;
         let first = place(0) >> Self::BITS;
         let last = place(count - 1) >> Self::BITS;
-        let knots = Knots { start: (place(0) - (first << Self::BITS)) as u32, pitch: self.0 as u32, pad: [0; 2] };
-        Span { first, nodes: (last - first) as u32 + 4, knots }
+        let nodes = (last - first) as u32 + order;
+        let start = (place(0) - (first << Self::BITS)) as u32;
+        Span { first, nodes, knots: Knots { start, pitch: self.0 as u32, nodes, pad: 0 } }
     }
 }
 
@@ -124,9 +174,11 @@ mod tests {
     #[test]
     fn tiles_cover_every_pixel_once() {
         let window = Window { x: -3, y: 5, width: 17, height: 31 };
-        for (side, pixels) in [(16384, 1 << 22), (16384, 40), (5, 1 << 22), (7, 9), (1, 1)] {
-            let tiles = split(window, side, pixels);
-            assert!(tiles.iter().all(|tile| tile.width <= side && tile.height <= side && tile.pixels() <= pixels));
+        for ([columns, rows], pixels) in
+            [([16384; 2], 1 << 22), ([16384; 2], 40), ([5; 2], 1 << 22), ([9, 4], 1 << 22), ([7; 2], 9), ([1; 2], 1)]
+        {
+            let tiles = split(window, [columns, rows], pixels);
+            assert!(tiles.iter().all(|tile| tile.width <= columns && tile.height <= rows && tile.pixels() <= pixels));
             let mut seen = vec![0; window.pixels()];
             for tile in &tiles {
                 for j in 0..tile.height as i32 {
@@ -135,13 +187,43 @@ mod tests {
                     }
                 }
             }
-            assert!(seen.iter().all(|&count| count == 1), "{side} {pixels}");
+            assert!(seen.iter().all(|&count| count == 1), "{columns} {rows} {pixels}");
         }
     }
 
     #[test]
+    fn a_tile_as_large_as_its_lattice_allows_has_no_more_nodes_than_can_be_told_apart() {
+        let frame = Frame::full(3000, 2000);
+        let mut tightest = 0;
+        for step in [1e-9, 1e-5, 3.3e-5, 1e-4, 7e-4, 2e-3, 0.1, 40.0] {
+            let lattice =
+                Lattice { order: 4, step: DVec2::splat(step), nodes: [0; 2], oversampling: DVec2::ONE, error: 0.0 };
+            for texture_size in [256, 16384] {
+                let most = [(texture_size / 3).min(MOST_NODES), texture_size.min(MOST_NODES)];
+                let [width, height] = sides_on(&lattice, frame, texture_size);
+                let [width, height] = [width.min(frame.width), height.min(frame.height)];
+                for from in [0, 1, 7].map(|from| from.min(frame.width - width).min(frame.height - height) as i32) {
+                    let tile = Window { x: from, y: from, width, height };
+                    let nodes = Nodes::new(&lattice, DVec2::new(5.0, 4.0), frame, tile);
+                    for axis in [0, 1] {
+                        let count = nodes.count(axis) as u32;
+                        assert!(count <= most[axis], "{step} {texture_size}: {count} nodes");
+                        let last = [width, height][axis] - 1;
+                        let end =
+                            u64::from(nodes.knots[axis].start) + u64::from(last) * u64::from(nodes.knots[axis].pitch);
+                        assert!(end <= u64::from(u32::MAX), "{step}: the last pixel's place is beyond 32 bits");
+                        tightest = tightest.max(count);
+                    }
+                }
+            }
+        }
+        assert!(tightest > MOST_NODES - 100, "{tightest}");
+    }
+
+    #[test]
     fn a_tile_sees_the_nodes_that_the_whole_window_sees() {
-        let lattice = Lattice { step: DVec2::new(0.037, 0.051), nodes: [0; 2], oversampling: DVec2::ONE, error: 0.0 };
+        let lattice =
+            Lattice { order: 4, step: DVec2::new(0.037, 0.051), nodes: [0; 2], oversampling: DVec2::ONE, error: 0.0 };
         let frame = Frame::full(640, 480);
         let whole = Nodes::new(&lattice, DVec2::new(5.0, 4.0), frame, frame.window);
         let tile = Window { x: 200, y: 113, width: 77, height: 64 };
@@ -157,7 +239,7 @@ mod tests {
                 let (of_part, same_fraction) = place(part.knots[axis], index);
                 assert_eq!(fraction, same_fraction);
                 for node in 0..4 {
-                    assert_eq!(whole.phases[axis][first + node], part.phases[axis][of_part + node]);
+                    assert_eq!(whole.phases(axis)[first + node], part.phases(axis)[of_part + node]);
                 }
             }
         }

@@ -48,6 +48,15 @@ impl Bell {
         }
     }
 
+    /// The same bell in another period, where it is periodic itself; any other as it is.
+    pub fn in_period(self, period: DVec2) -> Self {
+        match self {
+            Self::VonMises(_) => Self::VonMises(VonMises { period }),
+            Self::SineGaussian(bell) => Self::SineGaussian(SineGaussian { period, ..bell }),
+            other => other,
+        }
+    }
+
     /// Which bell it is, as `shaders/bells/any.glsl` counts them: each that is a shader of its own.
     pub(crate) fn kind(&self) -> u32 {
         match self {

@@ -32,6 +32,7 @@ pub mod special;
 pub mod sphere;
 mod spline;
 mod tails;
+mod waves;
 
 pub use bell::{Bell, Factor, Modes, Radial, Shape};
 pub use disc::{Disc, MOST_BLADES};
@@ -39,7 +40,8 @@ pub(crate) use distinct::Distinct;
 pub use gaussian::{windowed_gaussian, wrapped_gaussian};
 pub use periodic::{SineGaussian, VonMises};
 pub use profile::Profile;
-pub use spline::spline_error;
+pub use spline::{CUBIC, spline_error, spline_error_of, spline_gains};
+pub use waves::waves;
 
 /// The weight of mode (n, m) in the series of a bell: 1, 2 where exactly one index is 0, else 4.
 pub fn kappa(n: u32, m: u32) -> f64 {

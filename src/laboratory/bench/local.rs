@@ -1,14 +1,9 @@
 //! Small bells, each where it reaches, against a copy of the picture.
 
-use std::cell::RefCell;
-use std::hint::black_box;
-
 use super::report::{Report, Table, Target};
 use super::scenes;
-use super::stage::{Arm, Stage};
+use super::stage::{Actor, Stage, Steps};
 use crate::Result;
-use crate::certificate::Certificate;
-use crate::measure::interleave;
 use crate::plan::{Evaluator, Request, plan};
 use crate::problem::Problem;
 use crate::scene::Ghost;
@@ -47,18 +42,8 @@ pub(super) fn against_a_copy(stage: &Stage, report: &mut Report) -> Result<()> {
         let problem = Problem::new(ghosts, stage.frame);
         let request = Request { evaluator: Some(Evaluator::Local), ..stage.request(TOLERANCE) };
         let planned = plan(&problem, &request)?;
-        let mut actor = stage.actor(&planned)?;
-        let certificate = Certificate::measure(&mut actor.renderer().field, &planned)?;
-
-        let shared = RefCell::new(&mut actor);
-        let arms: [Arm<'_>; 5] = [
-            &mut || shared.borrow_mut().copy(),
-            &mut || plan(&problem, &request).map(|plan| drop(black_box(plan))),
-            &mut || shared.borrow_mut().spectrum(),
-            &mut || shared.borrow_mut().field(),
-            &mut || shared.borrow_mut().everything(),
-        ];
-        let [copy, planning, upload, field, together] = interleave(stage.rounds, arms)?;
+        let Steps { certificate, copy, plan, spectrum: upload, drawing: field, together } =
+            stage.steps(&planned, &request, Actor::field)?;
         let reached = planned.local().map_or(0.0, |local| local.reached) / stage.frame.window.pixels() as f64;
         let title = format!("local against a copy: K = {count}, {what} of {size}, tolerance {TOLERANCE:e}");
         let mut table = Table::new(title, "copy").note(format!(
@@ -66,7 +51,7 @@ pub(super) fn against_a_copy(stage: &Stage, report: &mut Report) -> Result<()> {
             certificate.measured, certificate.predicted
         ));
         table.row("copy", &copy, None);
-        let rows = [("plan", &planning), ("upload", &upload), ("upload and field", &field), ("together", &together)];
+        let rows = [("plan", &plan), ("upload", &upload), ("upload and field", &field), ("together", &together)];
         for (what, samples) in rows {
             table.row(what, samples, Some(samples.over(&copy)));
         }

@@ -51,18 +51,25 @@ fn constants(arms: &[Arm], times: &[f64]) -> [f64; CostModel::COUNT] {
 
     let bell = more(DIRECT) / (arms[DIRECT[0]].pixels() * ghosts(DIRECT));
     let term = more(SERIES) / (arms[SERIES[0]].pixels() * terms(SERIES));
-    let [few, long, wide] = ROWS;
-    let (pixels, rows) = (arms[few].pixels(), arms[few].rows());
-    let profile = more([few, long]) / (rows * terms([few, long]));
-    let profiles = rows * terms([few, wide]) * profile;
-    let harmonic = (more([few, wide]) - profiles) / (pixels * (harmonics(wide) - harmonics(few)));
-    let [coarse, fine, spread] = GRID;
-    let ([columns, lines], [more_columns, _]) = (nodes(coarse), nodes(fine));
-    let lattice = lines * (more_columns - columns) * harmonics(fine) * harmonic;
-    let strip = (more([coarse, fine]) - lattice) / ((more_columns - columns) * arms[fine].rows());
-    // The same lattice under a wider picture, less what a wider picture costs anyway.
-    let wider = arms[spread].pixels() - arms[coarse].pixels();
-    let interpolation = (more([coarse, spread]) - more([COPY, COPY_WIDE])) / wider;
+    let term_double = more(SERIES_DOUBLE) / (arms[SERIES_DOUBLE[0]].pixels() * terms(SERIES_DOUBLE));
+    let of_rows = |[few, long, wide]: [usize; 3]| {
+        let (pixels, rows) = (arms[few].pixels(), arms[few].rows());
+        let profile = more([few, long]) / (rows * terms([few, long]));
+        let profiles = rows * terms([few, wide]) * profile;
+        let harmonic = (more([few, wide]) - profiles) / (pixels * (harmonics(wide) - harmonics(few)));
+        (profile, harmonic)
+    };
+    let of_grid = |[coarse, fine, spread]: [usize; 3], harmonic: f64| {
+        let ([columns, lines], [more_columns, _]) = (nodes(coarse), nodes(fine));
+        let lattice = lines * (more_columns - columns) * harmonics(fine) * harmonic;
+        let strip = (more([coarse, fine]) - lattice) / ((more_columns - columns) * arms[fine].rows());
+        // The same lattice under a wider picture, less what a wider picture costs anyway.
+        let wider = arms[spread].pixels() - arms[coarse].pixels();
+        (strip, (more([coarse, spread]) - more([COPY, COPY_WIDE])) / wider)
+    };
+    let ((profile, harmonic), (profile_double, harmonic_double)) = (of_rows(ROWS), of_rows(ROWS_DOUBLE));
+    let (strip, interpolation) = of_grid(GRID, harmonic);
+    let (strip_double, interpolation_double) = of_grid(GRID_DOUBLE, harmonic_double);
     let modes = arms[SPECTRUM[0]].plan.terms() as f64;
     let spectrum = more(SPECTRUM) / (ghosts(SPECTRUM) * modes);
     let moment = more(MOMENTS) / (ghosts(MOMENTS) * moments(&arms[MOMENTS[0]].plan));
@@ -80,7 +87,11 @@ fn constants(arms: &[Arm], times: &[f64]) -> [f64; CostModel::COUNT] {
     let beside = reached([one, spread]) * splat + ghosts([one, spread]) * quad + more([COPY, COPY_WIDE]);
     let canvas = (more([one, spread]) - beside) / (arms[spread].pixels() - arms[one].pixels());
     let pass = 1e6 * times[TINY] / GRID_PASSES;
-    [bell, term, harmonic, profile, strip, interpolation, spectrum, moment, splat, quad, canvas, pass]
+    let series = [bell, term, harmonic, profile, strip, interpolation, spectrum, moment];
+    let local = [splat, quad, canvas];
+    let doubles = [term_double, harmonic_double, profile_double, strip_double, interpolation_double];
+    let all = series.into_iter().chain(local).chain(doubles).chain([pass]);
+    all.collect::<Vec<_>>().try_into().expect("as many as there are")
 }
 
 /// The medians of the rounds; what is lost in noise follows the others.
@@ -160,13 +171,24 @@ mod tests {
         let plan = &arm.plan;
         let terms = plan.terms() as f64;
         let harmonics = f64::from(plan.degree()[0] + 1);
-        let rows = |rows: f64, columns: f64| rows * terms * model.profile + rows * columns * harmonics * model.harmonic;
+        let double = index >= SERIES_DOUBLE[0];
+        let [term, profile, harmonic, strip, interpolation] = match double {
+            false => [model.term, model.profile, model.harmonic, model.strip, model.interpolation],
+            true => [
+                model.term_double,
+                model.profile_double,
+                model.harmonic_double,
+                model.strip_double,
+                model.interpolation_double,
+            ],
+        };
+        let rows = |rows: f64, columns: f64| rows * terms * profile + rows * columns * harmonics * harmonic;
         let base = 4.0 * arm.pixels();
         let nanoseconds = match index {
             COPY | COPY_WIDE => base,
             k if DIRECT.contains(&k) => base + arm.pixels() * plan.ghosts() as f64 * model.bell,
-            k if SERIES.contains(&k) => base + arm.pixels() * terms * model.term,
-            k if ROWS.contains(&k) => base + rows(arm.rows(), arm.pixels() / arm.rows()),
+            k if SERIES.contains(&k) || SERIES_DOUBLE.contains(&k) => base + arm.pixels() * terms * term,
+            k if ROWS.contains(&k) || ROWS_DOUBLE.contains(&k) => base + rows(arm.rows(), arm.pixels() / arm.rows()),
             k if SPECTRUM.contains(&k) => plan.ghosts() as f64 * terms * model.spectrum,
             k if MOMENTS.contains(&k) => plan.ghosts() as f64 * moments(plan) * model.moment,
             TINY => GRID_PASSES * model.pass,
@@ -176,7 +198,7 @@ mod tests {
             }
             _ => {
                 let [columns, lines] = plan.lattice().unwrap().nodes.map(f64::from);
-                base + rows(lines, columns) + columns * arm.rows() * model.strip + arm.pixels() * model.interpolation
+                base + rows(lines, columns) + columns * arm.rows() * strip + arm.pixels() * interpolation
             }
         };
         1e-6 * nanoseconds

@@ -63,6 +63,11 @@ const MEANINGS: [&str; CostModel::COUNT] = [
     "a bell at a pixel that it reaches, by local",
     "a ghost that is drawn where it reaches, by local",
     "a pixel that ghosts are drawn on, by local",
+    "a term at a pixel, by series in doubles",
+    "a harmonic of x at a pixel, by rows in doubles",
+    "a term of a row's profiles, by rows in doubles",
+    "a node of the lattice along a row, by grid in doubles",
+    "an interpolation at a pixel, by grid in doubles",
     "starting a pass",
 ];
 

@@ -11,7 +11,7 @@ use super::chart::{Axis, Chart, Map, Scalar};
 use super::report::{Field, Figure};
 use crate::Result;
 use crate::frame::Frame;
-use crate::plan::{Evaluator, Group, Layer, Plan, Series, Transform};
+use crate::plan::{Evaluator, Group, Layer, Plan, Precision, Series, Transform};
 use crate::problem::Problem;
 use crate::renderer::{Picture, Settings};
 use crate::scene::Ghost;
@@ -126,6 +126,7 @@ impl Scene {
             ghosts: self.centers.len(),
             smallest: self.size * canvas.scale,
             largest: self.size * canvas.scale,
+            proportional: true,
             weight: self.centers.len() as f64,
             degree: self.degree,
             transform: Transform::Dispatch,
@@ -133,6 +134,7 @@ impl Scene {
         let layer = match evaluator {
             Evaluator::Direct => Layer::direct([group]),
             _ => Layer::Series(Series {
+                precision: Precision::Single,
                 evaluator,
                 period: self.period * canvas.scale,
                 counts: vec![self.degree[1] + 1; self.degree[0] as usize + 1].into(),

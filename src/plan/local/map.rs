@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::area::Area;
 use super::slopes::{Kind, Slopes};
 use crate::frame::Frame;
-use crate::plan::direct::{HALF_A_UNIT, PER_OFFSET, PER_WEIGHT, SINE, STORED};
+use crate::plan::direct::{HALF_A_UNIT, PER_OFFSET, PER_WEIGHT, SINE};
 use crate::plan::weigh::Weighed;
 use crate::plan::{Group, Precision};
 use crate::problem::Problem;
@@ -52,12 +52,12 @@ pub(super) struct Worst {
 }
 
 impl Worst {
-    /// What floats cost, at most.
+    /// What floats cost, at most, before what 64 bits give is stored in 32.
     pub fn rounding(&self, precision: Precision) -> f64 {
         match precision {
             Precision::Single => self.single,
-            // The same roundings, of so much smaller units; and then the canvas.
-            Precision::Double => STORED + HALF_A_UNIT + DOUBLE * self.single,
+            // The same roundings, of so much smaller units.
+            Precision::Double => DOUBLE * self.single,
         }
     }
 }

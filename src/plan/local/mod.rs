@@ -10,6 +10,8 @@ mod slopes;
 use std::sync::Arc;
 
 use super::candidate::{Survey, made};
+use super::direct::{HALF_A_UNIT, STORED};
+use super::request::GHOSTS_A_ROUND;
 use super::weigh::Weighed;
 use super::{Cost, Evaluator, Group, Layer, Plan, Precision, Prediction, Request, Transform, cost, share};
 use crate::frame::Frame;
@@ -39,9 +41,6 @@ const NEEDED: f64 = 0.1;
 /// The most of the tolerance that rounding may take in 32-bit floats: with less left than the rest the reach grows, and 64-bit
 /// floats cost some times as much.
 const SINGLE: f64 = 0.8;
-
-/// Half a unit of the canvas, which is one of f32 whatever the floats are.
-const CANVAS: f64 = 0.5 * f32::EPSILON as f64;
 
 /// How near to its budget what is left out should come, and how often that is tried.
 const CLOSE: f64 = 0.4;
@@ -83,7 +82,7 @@ impl Local {
 }
 
 impl Local {
-    /// Whether the lists of 64-bit ghosts, eight of them a round, are what a renderer goes through and has room for.
+    /// Whether the lists of 64-bit ghosts, some of them a round, are what a renderer goes through and has room for.
     ///
     /// # Errors
     /// [`Error::Plan`] where they are not.
@@ -92,7 +91,7 @@ impl Local {
             return Ok(());
         }
         let ghosts: usize = self.groups.iter().map(|group| group.ghosts).sum();
-        if ghosts / 8 > loop_rounds {
+        if ghosts / GHOSTS_A_ROUND > loop_rounds {
             return Err(Error::Plan("local would need more rounds of a loop than this renderer runs".into()));
         }
         let blocks = self.side() / f64::from(1u32 << block_shift(self.side())) + 1.0;
@@ -103,6 +102,14 @@ impl Local {
     }
 }
 
+/// What floats cost, where storing what 64 bits give in 32 costs so much.
+fn floats(worst: &Worst, precision: Precision, stored: f64) -> f64 {
+    match precision {
+        Precision::Single => worst.rounding(precision),
+        Precision::Double => stored + worst.rounding(precision),
+    }
+}
+
 /// The highest level found that stays within the budget, and in which floats.
 struct Search {
     found: Option<(f64, Worst)>,
@@ -110,21 +117,27 @@ struct Search {
 }
 
 impl Search {
-    /// Looks at each `step`-th of the ghosts, from this level on.
+    /// Looks at each `step`-th of the ghosts, from this level on: in floats that are given, or in 32 bits where these can.
     ///
     /// # Errors
     /// [`Error::ToleranceBelowFloor`] where floats cannot be as exact.
-    fn new(map: &Map<'_>, step: usize, part: f64, mut level: f64) -> Result<Self> {
+    fn new(
+        map: &Map<'_>,
+        step: usize,
+        (part, stored): (f64, f64),
+        given: Option<Precision>,
+        mut level: f64,
+    ) -> Result<Self> {
         let mut worst = map.worst(level, step);
         let single = worst.rounding(Precision::Single) <= SINGLE * part;
-        let mut precision = if single { Precision::Single } else { Precision::Double };
+        let mut precision = given.unwrap_or(if single { Precision::Single } else { Precision::Double });
         let mut found: Option<(f64, Worst)> = None;
         for attempt in 0..MOST_TRIES {
             // What floats cost grows a little with the reach.
-            if precision == Precision::Single && worst.single > (1.0 - NEEDED) * part {
+            if given.is_none() && precision == Precision::Single && worst.single > (1.0 - NEEDED) * part {
                 (precision, found) = (Precision::Double, None);
             }
-            let rounding = worst.rounding(precision);
+            let rounding = floats(&worst, precision, stored);
             if rounding > (1.0 - NEEDED) * part {
                 return Err(Error::ToleranceBelowFloor { asked: part, floor: rounding / (1.0 - NEEDED) });
             }
@@ -156,7 +169,8 @@ pub(super) struct Bounded {
     pub rounding: f64,
 }
 
-/// A local layer of groups, which stays within a part of the tolerance.
+/// A local layer of groups, which stays within a part of the tolerance: in 32-bit floats where these can, or in floats that are
+/// given. Of the part, so much is taken where 64 bits are stored in 32.
 ///
 /// # Errors
 /// [`Error::ToleranceBelowFloor`] where floats cannot be as exact.
@@ -164,7 +178,8 @@ pub(super) fn layer(
     problem: &Problem,
     weighed: &Weighed,
     groups: &[Group],
-    part: f64,
+    (part, stored): (f64, f64),
+    given: Option<Precision>,
     loop_rounds: usize,
 ) -> Result<Bounded> {
     let ghosts: usize = groups.iter().map(|group| group.ghosts).sum();
@@ -173,15 +188,15 @@ pub(super) fn layer(
     let step = ghosts.div_ceil(SAMPLED);
     let mut level = 0.7 * part / crowding(problem, weighed, part);
     if step > 1
-        && let Ok(Search { found: Some((few, _)), .. }) = Search::new(&map, step, part, level)
+        && let Ok(Search { found: Some((few, _)), .. }) = Search::new(&map, step, (part, stored), given, level)
     {
         level = BELOW * few;
     }
-    let Search { found, precision } = Search::new(&map, 1, part, level)?;
+    let Search { found, precision } = Search::new(&map, 1, (part, stored), given, level)?;
     let Some((level, worst)) = found else {
         return Err(Error::Plan("local would leave out too much at any reach".into()));
     };
-    let rounding = worst.rounding(precision);
+    let rounding = floats(&worst, precision, stored);
     let groups = groups.iter().map(|group| Group { transform: Transform::Direct, ..group.clone() }).collect();
     let local = Local { groups, level, precision, reached: worst.reached };
     local.has_room(loop_rounds)?;
@@ -196,13 +211,19 @@ pub(super) fn candidate(problem: &Arc<Problem>, survey: &Survey, request: &Reque
     let weighed = &survey.weighed;
     let left = request.tolerance - weighed.dropped_error;
     let Bounded { local, cut, rounding } =
-        layer(problem, weighed, &survey.groups, left, request.loop_rounds).map_err(|error| match error {
-            Error::ToleranceBelowFloor { floor, .. } => {
-                Error::ToleranceBelowFloor { asked: request.tolerance, floor: floor / (1.0 - share::DROPPED) }
-            }
-            error => error,
-        })?;
-    let storage = CANVAS.min(rounding);
+        layer(problem, weighed, &survey.groups, (left, STORED), None, request.loop_rounds).map_err(
+            |error| match error {
+                Error::ToleranceBelowFloor { floor, .. } => {
+                    Error::ToleranceBelowFloor { asked: request.tolerance, floor: floor / (1.0 - share::DROPPED) }
+                }
+                error => error,
+            },
+        )?;
+    let storage = match local.precision {
+        Precision::Single => HALF_A_UNIT,
+        Precision::Double => STORED,
+    };
+    let storage = storage.min(rounding);
     let dropped = weighed.dropped_error;
     let predicted = Prediction { dropped, cut, rounding: rounding - storage, storage, ..Prediction::default() };
     let precision = local.precision;
