@@ -363,9 +363,9 @@ fn in_gaussians(bell: &Bell, precision: Precision) -> f64 {
         Bell::VonMises(_) | Bell::SineGaussian(_) => [2.5, 5.5],
         // A row is looked for.
         Bell::Profile(_) => [7.5, 7.5],
-        Bell::Disc(disc) if disc.is_round() => [1.5, 2.0],
-        // Eight sides.
-        Bell::Disc(_) => [4.0, 5.0],
+        Bell::Disc(disc) if disc.is_round() => [1.5, 2.5],
+        // Three rows of a table are read.
+        Bell::Disc(_) => [5.0, 7.5],
     };
     if precision == Precision::Single { single } else { double }
 }

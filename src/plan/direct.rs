@@ -74,9 +74,9 @@ const PER_POSITION: f64 = 2.0 * HALF_A_UNIT;
 pub(super) const PER_OFFSET: f64 = 3.0 * HALF_A_UNIT;
 /// The square of it as a profile's table has it, both rounded: half of that in the radius.
 const PER_RADIUS: f64 = 1.5 * HALF_A_UNIT;
-/// A disc's radius, a sum of rounded products or its root, and for a polygon two such sums, one after the other: of each unit
-/// of it.
-const PER_RHO: f64 = 10.0 * HALF_A_UNIT;
+/// A disc's radius, a sum of rounded products and its root, or for a polygon four such sums, one after the other: of each unit of
+/// it.
+const PER_RHO: f64 = 18.0 * HALF_A_UNIT;
 /// The sine that a sine-Gaussian's mean is taken from, absolutely.
 pub(super) const SINE: f64 = 3.0 * HALF_A_UNIT;
 

@@ -7,7 +7,7 @@
 
 mod transform;
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, SQRT_2, TAU};
 use std::sync::Arc;
 
 use glam::DVec2;
@@ -19,11 +19,8 @@ use super::tails::copies;
 /// 64-bit floats are exact.
 const RIMS: [f64; 2] = [1e-6, 2.0];
 
-/// Most blades: with more a disc can hardly be told from a round one.
+/// Most blades: with more a disc can hardly be told from a round one, and three mirrors would not fold it up.
 pub const MOST_BLADES: u32 = 16;
-
-/// Sides of which no other is the mirror image, for the most blades; as many as the shader goes through.
-const SIDES: usize = MOST_BLADES as usize / 2;
 
 /// A hair for what f64 rounds.
 const HAIR: f64 = 1.0 + 1e-12;
@@ -43,8 +40,10 @@ struct Polygon {
     rotation: f64,
     /// Cosine and sine of the rotation.
     turn: DVec2,
-    /// The directions in which the sides of the upper half lie, over their distance from the centre; the last one repeated.
-    sides: [DVec2; SIDES],
+    /// Two mirrors through the centre: each takes what is on its side, by this direction times √2, to the other.
+    mirrors: [DVec2; 2],
+    /// The two sides that are left, by the directions in which they lie over their distance from the centre.
+    sides: [DVec2; 2],
 }
 
 /// Everything else follows from the two.
@@ -146,24 +145,33 @@ impl Disc {
 
 impl Polygon {
     fn new(blades: u32, rotation: f64) -> Self {
+        // From a corner to the middle of a side, and on to the next corner: a mirror may stand at each.
         let step = PI / f64::from(blades);
-        let count = blades.div_ceil(2) as usize;
-        let side = |k: usize| DVec2::from_angle(step * (2 * k.min(count - 1) + 1) as f64) / step.cos();
+        let half = blades.div_ceil(2);
+        let mirror = |steps: u32| SQRT_2 * DVec2::from_angle(FRAC_PI_2 + step * f64::from(steps));
+        let side = |steps: u32| DVec2::from_angle(step * f64::from(steps)) / step.cos();
         // Whole turns go first, and exactly.
         let turn = DVec2::from_angle((rotation % 360.0).to_radians());
-        Self { blades, rotation, turn, sides: std::array::from_fn(side) }
+        let mirrors = [mirror(half), mirror(half.div_ceil(2))];
+        Self { blades, rotation, turn, mirrors, sides: [side(1), side(3)] }
     }
 
     fn apothem(&self) -> f64 {
         (PI / f64::from(self.blades)).cos()
     }
 
-    /// A corner lies on the axis, so that the lower half is the mirror image of the upper one.
+    /// A corner lies on the axis, so that the lower half is the mirror image of the upper one; of that two mirrors leave a
+    /// quarter, at most two sides.
     fn radius(&self, at: DVec2) -> f64 {
         let DVec2 { x: cosine, y: sine } = self.turn;
-        let x = cosine * at.x + sine * at.y;
-        let y = (cosine * at.y - sine * at.x).abs();
-        self.sides.iter().fold(0.0, |radius: f64, side| radius.max(side.x * x + side.y * y))
+        let mut x = cosine * at.x + sine * at.y;
+        let mut y = (cosine * at.y - sine * at.x).abs();
+        for mirror in self.mirrors {
+            let beyond = (mirror.x * x + mirror.y * y).max(0.0);
+            (x, y) = (x - beyond * mirror.x, y - beyond * mirror.y);
+        }
+        let [first, second] = self.sides.map(|side| side.x * x + side.y * y);
+        first.max(second)
     }
 }
 
@@ -252,12 +260,12 @@ impl Shape for Disc {
         self.is_round()
     }
 
-    /// Where it ends, one over the rim's width; of a polygon also cosine and sine of the rotation, and its sides, two a row.
+    /// Where it ends, one over the rim's width; of a polygon also cosine and sine of the rotation, its mirrors and its sides.
     fn parameters(&self) -> Vec<[f64; 4]> {
         let turn = self.polygon.as_ref().map_or(DVec2::X, |polygon| polygon.turn);
         let mut rows = vec![[self.ends(), self.inverse_rim(), turn.x, turn.y]];
         if let Some(polygon) = &self.polygon {
-            rows.extend(polygon.sides.chunks_exact(2).map(|pair| [pair[0].x, pair[0].y, pair[1].x, pair[1].y]));
+            rows.extend([polygon.mirrors, polygon.sides].map(|[first, second]| [first.x, first.y, second.x, second.y]));
         }
         rows
     }

@@ -61,6 +61,16 @@ pub(in crate::laboratory) fn by_hand(
     plan(&Problem::new(ghosts, frame), &request)
 }
 
+/// `count` Gaussians from one size to another, each as likely, spread evenly over the picture.
+pub(super) fn between(count: usize, [smallest, largest]: [f64; 2], frame: Frame) -> Vec<Ghost> {
+    // What `scattered` has between its smallest size and twice that.
+    let sized = |ghost: Ghost| {
+        let size = smallest + (largest - smallest) * (ghost.size - 1.0);
+        Ghost { center: ghost.center / 1.1, size, ..ghost }
+    };
+    scattered(count, 1.0, frame).into_iter().map(sized).collect()
+}
+
 /// `count` Gaussians of one size, spread evenly over the picture; benches/peers/peers.py has the same.
 pub(super) fn alike(count: usize, size: f64, frame: Frame) -> Vec<Ghost> {
     let resized = |ghost: Ghost| Ghost { center: ghost.center / 1.1, size: DVec2::splat(size), ..ghost };
