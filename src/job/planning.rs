@@ -42,6 +42,7 @@ pub fn plan(accuracy: &Accuracy, problem: &Arc<Problem>, device: Option<&Info>, 
         degree,
         evaluator,
         loop_rounds: device.and_then(Info::loop_rounds).unwrap_or(usize::MAX),
+        doubles: device.is_none_or(|info| info.limits.doubles),
         // A term takes three vec4.
         most_terms: device.map_or(unlimited.most_terms, |info| (info.limits.storage_block / 48) as usize),
         cost_model: known.model,
@@ -54,7 +55,7 @@ pub fn plan(accuracy: &Accuracy, problem: &Arc<Problem>, device: Option<&Info>, 
             let (floor, by) = (plan.tolerance, plan.evaluator());
             let note = (floor > asked).then(|| {
                 format!(
-                    "the tolerance is {floor:.1e} instead of {asked:.1e}: what 32-bit floats can give here, by {by}"
+                    "the tolerance is {floor:.1e} instead of {asked:.1e}: the lowest that can be had here, by {by}"
                 )
             });
             (plan, note)

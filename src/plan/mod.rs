@@ -218,7 +218,7 @@ impl Found {
         let before = self.plans.len();
         self.layers_in(Precision::Single, problem, survey, request, series);
         // Where 32-bit floats are of no use, 64 may be.
-        if self.plans.len() == before && request.tolerance < BEYOND_SINGLE {
+        if self.plans.len() == before && request.doubles && request.tolerance < BEYOND_SINGLE {
             self.layers_in(Precision::Double, problem, survey, request, series);
         }
     }

@@ -21,6 +21,8 @@ pub struct Request {
     pub most_terms: usize,
     /// Rounds that the renderer runs a shader's loops for one pixel.
     pub loop_rounds: usize,
+    /// Whether the device has 64-bit floats.
+    pub doubles: bool,
     /// What each kind of work costs.
     pub cost_model: CostModel,
 }
@@ -36,6 +38,7 @@ impl Request {
             oversampling: None,
             most_terms: 2 << 20,
             loop_rounds: usize::MAX,
+            doubles: true,
             cost_model: CostModel::default(),
         }
     }

@@ -9,6 +9,7 @@ mod certificate;
 mod cli;
 mod composite;
 mod evaluators;
+mod exact;
 mod exchange;
 mod experiments;
 mod extremes;

@@ -51,8 +51,9 @@ impl Stage {
 
     /// What is asked of a plan whose choices are to be measured here.
     pub fn request(&self, tolerance: f64) -> Request {
-        let loop_rounds = self.device.info().loop_rounds().unwrap_or(usize::MAX);
-        Request { loop_rounds, cost_model: self.cost_model, ..Request::new(tolerance) }
+        let info = self.device.info();
+        let (loop_rounds, doubles) = (info.loop_rounds().unwrap_or(usize::MAX), info.limits.doubles);
+        Request { loop_rounds, doubles, cost_model: self.cost_model, ..Request::new(tolerance) }
     }
 
     /// Whether the device's timer tells the truth. Mesa's software renderer leaves out what compute shaders do.

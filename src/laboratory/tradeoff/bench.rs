@@ -67,6 +67,7 @@ impl Bench {
     pub fn request(&self, tolerance: f64) -> Request {
         let info = self.device.info();
         Request {
+            doubles: info.limits.doubles,
             loop_rounds: info.loop_rounds().unwrap_or(usize::MAX),
             most_terms: (info.limits.storage_block / 48) as usize,
             cost_model: self.cost_model,
