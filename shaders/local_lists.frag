@@ -12,7 +12,7 @@ struct Ghost {
 layout(std430, binding = BINDING_GHOSTS) readonly buffer Ghosts {
     Ghost ghosts[];
 };
-// Where the list of each block begins, in order, and where the last one ends; then the lists, of multiples of DIRECT_STEP.
+// Where the list of each block begins, in order, and where the last one ends; then the lists, of multiples of LIST_STEP.
 layout(std430, binding = BINDING_PARTIALS) readonly buffer Lists {
     uint lists[];
 };
@@ -42,8 +42,8 @@ void main() {
     precise double x = aspect * double(2 * p.x + 1 - size.x) / double(size.y);
     precise double y = double(size.y - 2 * p.y - 1) / double(size.y);
     double red = 0.0lf, green = 0.0lf, blue = 0.0lf;
-    for (uint at = lists[index]; at < last; at += DIRECT_STEP) {
-        for (uint k = 0u; k < DIRECT_STEP; ++k) {
+    for (uint at = lists[index]; at < last; at += LIST_STEP) {
+        for (uint k = 0u; k < LIST_STEP; ++k) {
             Ghost ghost = ghosts[lists[at + k]];
             precise dvec2 offset = dvec2(x, y) - ghost.center;
             double bell = bell_value(offset, ghost.size, ghost.bell);

@@ -6,7 +6,7 @@ use std::ops::Range;
 use glow::HasContext as _;
 
 use super::context::Device;
-use super::evaluators::{STEP, Words, within_rounds};
+use super::evaluators::{Words, within_rounds};
 use super::exact::room;
 use super::layout::{CANVAS, DoubleGhost, GHOSTS, LARGEST_POINT, LocalGhost, NODES, PARTIALS, PASS, SHAPES};
 use super::resource::{Attribute, Buffer, Scratch, Texel, Texture};
@@ -54,13 +54,15 @@ pub(crate) struct Listed<'a> {
     pub blocks: [u32; 2],
     /// A block's side is this power of two.
     pub shift: u32,
+    /// Lists are multiples of this: what a shader goes through in one round.
+    pub step: usize,
 }
 
 /// What is on the device of either.
 enum Scene {
     Nothing,
     Drawn(Vec<Batches>),
-    Listed { columns: u32, shift: u32, bands: u32 },
+    Listed { columns: u32, shift: u32, bands: u32, step: u32 },
 }
 
 /// The ghosts of one kind of bell as so many draws.
@@ -144,12 +146,17 @@ impl LocalPass {
         let [columns, rows] = listed.blocks;
         let starts = &listed.lists[..=(columns * rows) as usize];
         let longest = starts.windows(2).map(|pair| (pair[1] - pair[0]) as usize).max().unwrap_or(0);
-        within_rounds(runner, longest / STEP, "local", longest, "ghosts")?;
+        within_rounds(runner, longest / listed.step, "local", longest, "ghosts")?;
         self.doubles.store(listed.ghosts)?;
         self.lists.store(listed.lists)?;
         self.shapes.store(bytemuck::cast_slice(shapes))?;
         let bells = f64::from(1u32 << (2 * listed.shift)) * (listed.lists.len() - starts.len()) as f64;
-        self.scene = Scene::Listed { columns, shift: listed.shift, bands: (bells / MOST_LISTED).ceil() as u32 };
+        self.scene = Scene::Listed {
+            columns,
+            shift: listed.shift,
+            bands: (bells / MOST_LISTED).ceil() as u32,
+            step: listed.step as u32,
+        };
         Ok(())
     }
 
@@ -187,7 +194,7 @@ impl LocalPass {
                     one(bell, quads, false)?;
                 }
             }
-            &Scene::Listed { columns, shift, bands } => {
+            &Scene::Listed { columns, shift, bands, step } => {
                 let (window, aspect) = (frame.window, frame.pixel_aspect.to_bits());
                 let [low, high] = [aspect as u32 as i32, (aspect >> 32) as i32];
                 let [x, y] = corner;
@@ -209,7 +216,8 @@ impl LocalPass {
                 self.tile.store(&[words])?;
                 self.doubles.bind_storage(GHOSTS);
                 self.lists.bind_storage(PARTIALS);
-                let mut defines = vec![("BELL", bell), ("DOUBLE", "1")];
+                let step = format!("{step}u");
+                let mut defines = vec![("BELL", bell), ("DOUBLE", "1"), ("LIST_STEP", &step)];
                 if self.in_doubles {
                     let pixels = width as usize * height as usize;
                     room(runner, &mut self.exact, 1 + (3 * pixels).div_ceil(2))?;

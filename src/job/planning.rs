@@ -54,9 +54,7 @@ pub fn plan(accuracy: &Accuracy, problem: &Arc<Problem>, device: Option<&Info>, 
             let plan = plan::plan_at_least(problem, &request)?;
             let (floor, by) = (plan.tolerance, plan.evaluator());
             let note = (floor > asked).then(|| {
-                format!(
-                    "the tolerance is {floor:.1e} instead of {asked:.1e}: the lowest that can be had here, by {by}"
-                )
+                format!("the tolerance is {floor:.1e} instead of {asked:.1e}: the lowest that can be had here, by {by}")
             });
             (plan, note)
         }

@@ -13,7 +13,8 @@ use crate::plan::{self, Area, Local, Plan, Precision};
 use crate::scene::Ghost;
 use crate::series::Bell;
 
-/// Lists are multiples of this: what a shader goes through in one round.
+/// Lists are multiples of this where one of them is long: what a shader goes through in one round; and what is not long.
+const FEW: usize = 1 << 15;
 const STEP: usize = crate::gpu::evaluators::STEP;
 
 const _: () = assert!(plan::LARGEST_POINT as i32 == crate::gpu::layout::LARGEST_POINT);
@@ -62,11 +63,11 @@ pub(super) fn upload(plan: &Plan, local: &Local, frame: Frame, pass: &mut LocalP
         return pass.set_drawn(&Drawn { ghosts: &ghosts, kinds: &kinds }, &single);
     }
     let shift = plan::block_shift(local.side());
-    let (lists, blocks) = lists(&placed, frame, shift);
+    let (lists, blocks, step) = lists(&placed, frame, shift);
     let mut ghosts: Vec<_> =
         placed.par_iter().map(|placed| double_ghost(placed.ghost, placed.weight, placed.bell)).collect();
     ghosts.push(DoubleGhost::NONE);
-    pass.set_listed(runner, &Listed { ghosts: &ghosts, lists: &lists, blocks, shift }, &shapes.rows)
+    pass.set_listed(runner, &Listed { ghosts: &ghosts, lists: &lists, blocks, shift, step }, &shapes.rows)
 }
 
 /// The parameters of the bells of a layer.
@@ -138,8 +139,8 @@ fn drawn(placed: &Placed<'_>, frame: Frame) -> LocalGhost {
 }
 
 /// For each block of the window where its list begins, and where the last one ends; then the lists, filled up with the ghost
-/// that is none. And how many columns and rows of blocks there are.
-fn lists(placed: &[Placed<'_>], frame: Frame, shift: u32) -> (Vec<u32>, [u32; 2]) {
+/// that is none. How many columns and rows of blocks there are; and what the lists are multiples of.
+fn lists(placed: &[Placed<'_>], frame: Frame, shift: u32) -> (Vec<u32>, [u32; 2], usize) {
     let window = frame.window;
     let blocks = [window.width, window.height].map(|side| side.div_ceil(1 << shift));
     let count = (blocks[0] * blocks[1]) as usize;
@@ -155,11 +156,13 @@ fn lists(placed: &[Placed<'_>], frame: Frame, shift: u32) -> (Vec<u32>, [u32; 2]
     };
     let mut lengths = vec![0usize; count];
     placed.iter().for_each(|placed| of(&placed.area).for_each(|block| lengths[block] += 1));
+    // One after the other, where the longest list is none that a software renderer would not end: many are short.
+    let step = if lengths.iter().all(|&length| length < FEW) { 1 } else { STEP };
     let mut starts = Vec::with_capacity(count + 1);
     let mut end = count + 1;
     for length in &lengths {
         starts.push(end as u32);
-        end += length.next_multiple_of(STEP);
+        end += length.next_multiple_of(step);
     }
     starts.push(end as u32);
     let mut lists = vec![placed.len() as u32; end];
@@ -171,5 +174,5 @@ fn lists(placed: &[Placed<'_>], frame: Frame, shift: u32) -> (Vec<u32>, [u32; 2]
             next[block] += 1;
         }
     }
-    (lists, blocks)
+    (lists, blocks, step)
 }
