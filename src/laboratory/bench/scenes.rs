@@ -71,6 +71,11 @@ pub(super) fn between(count: usize, [smallest, largest]: [f64; 2], frame: Frame)
     scattered(count, 1.0, frame).into_iter().map(sized).collect()
 }
 
+/// A round Gaussian.
+pub(super) fn gaussian(center: DVec2, size: f64, radiance: [f64; 3]) -> Ghost {
+    Ghost { bell: Bell::Gaussian, center, size: DVec2::splat(size), radiance }
+}
+
 /// `count` Gaussians of one size, spread evenly over the picture; benches/peers/peers.py has the same.
 pub(super) fn alike(count: usize, size: f64, frame: Frame) -> Vec<Ghost> {
     let resized = |ghost: Ghost| Ghost { center: ghost.center / 1.1, size: DVec2::splat(size), ..ghost };
