@@ -274,7 +274,7 @@ fn meant(name: &str, known: &[String]) -> String {
 }
 
 fn below_floor(asked: f64, floor: f64) -> String {
-    format!("a tolerance of {asked:.1e} is below what 32-bit floats can give here: {floor:.1e}")
+    format!("a tolerance of {asked:.1e} is below what can be had here: {floor:.1e}")
 }
 
 /// Two digits that are no less than `floor`, for an option.

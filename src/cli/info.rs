@@ -103,6 +103,7 @@ fn describe(out: &mut dyn Write, info: &Info) -> io::Result<()> {
     let limits = info.limits;
     writeln!(out, "  largest texture    {0} x {0}", limits.texture_size)?;
     writeln!(out, "  largest storage    {} MiB a block", limits.storage_block >> 20)?;
+    writeln!(out, "  64-bit floats      {}", if limits.doubles { "yes" } else { "no" })?;
     writeln!(out, "  largest uniforms   {} KiB a block", limits.uniform_block >> 10)?;
     let [x, y, z] = limits.work_groups;
     let (invocations, shared) = (limits.work_group_invocations, limits.shared_memory >> 10);

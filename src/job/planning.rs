@@ -30,6 +30,7 @@ pub(crate) fn request(device: Option<&Info>, tolerance: f64, cost_model: CostMod
     let unlimited = Request { cost_model, ..Request::new(tolerance) };
     device.map_or(unlimited, |info| Request {
         loop_rounds: info.loop_rounds().unwrap_or(usize::MAX),
+        doubles: info.limits.doubles,
         // A term takes three vec4.
         most_terms: (info.limits.storage_block / 48) as usize,
         most_nodes: info.limits.texture_size,
@@ -55,9 +56,7 @@ pub fn plan(accuracy: &Accuracy, problem: &Arc<Problem>, device: Option<&Info>, 
             let plan = plan::plan_at_least(problem, &request)?;
             let (floor, by) = (plan.tolerance, plan.evaluator());
             let note = (floor > asked).then(|| {
-                format!(
-                    "the tolerance is {floor:.1e} instead of {asked:.1e}: what 32-bit floats can give here, by {by}"
-                )
+                format!("the tolerance is {floor:.1e} instead of {asked:.1e}: the lowest that can be had here, by {by}")
             });
             (plan, note)
         }

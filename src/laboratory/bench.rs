@@ -2,6 +2,7 @@
 
 mod cases;
 mod choices;
+mod digits;
 mod exchange;
 mod first;
 mod gaussians;
@@ -71,8 +72,12 @@ pub struct Args {
     #[arg(long, conflicts_with_all = ["gaussians", "scenes"])]
     local: bool,
 
+    /// Measure nothing but what the last digits cost: a tolerance of 1e-7, which asks for 64-bit floats, against 1e-5
+    #[arg(long, conflicts_with_all = ["gaussians", "scenes", "local"])]
+    digits: bool,
+
     /// Measure nothing but frames of the window, without a window: a slider and a light that are dragged
-    #[arg(long, conflicts_with_all = ["gaussians", "scenes", "local", "rounds", "quick"])]
+    #[arg(long, conflicts_with_all = ["gaussians", "scenes", "local", "digits", "rounds", "quick"])]
     viewer: bool,
 
     /// Write the rows of all tables to this file too
@@ -105,12 +110,13 @@ Examples:
   vglare bench --size 3840x2160 --csv 4k.csv
   vglare bench --gaussians 1000 --json 1000.json
   vglare bench --scenes 200 --size 480x270  How good are the plan's choices and its predictions?
+  vglare bench --digits --strict            What do the digits beyond 32-bit floats cost?
   vglare bench --viewer --strict            Are drags in the window fluent here?";
 
 fn part(text: &str) -> Result<f64, String> {
     match text.parse() {
-        Ok(part @ 1e-6..=1.0) => Ok(part),
-        _ => Err("expected a number from 1e-6 to 1".to_owned()),
+        Ok(part @ 1e-7..=1.0) => Ok(part),
+        _ => Err("expected a number from 1e-7 to 1".to_owned()),
     }
 }
 
@@ -178,6 +184,10 @@ fn measure(args: &Args, window: Window) -> Result<Report> {
         local::against_a_copy(&stage, &mut report)?;
         return Ok(report);
     }
+    if args.digits {
+        digits::in_doubles(&stage, &mut report)?;
+        return Ok(report);
+    }
     if args.viewer {
         window(stage.shared_device(), size, &mut report)?;
         return Ok(report);
@@ -185,6 +195,7 @@ fn measure(args: &Args, window: Window) -> Result<Report> {
     first::frame(&stage, opened, &mut report)?;
     cases::default_path(&stage, &mut report)?;
     local::against_a_copy(&stage, &mut report)?;
+    digits::in_doubles(&stage, &mut report)?;
     many::ghosts(&stage, &mut report, args.quick)?;
     if !args.quick {
         cases::rows_and_series(&stage, &mut report)?;

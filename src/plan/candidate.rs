@@ -101,7 +101,7 @@ pub(super) fn candidate(
         let of = |precision, rounding| Floats { series: precision, summed: precision, rounding };
         let single = of(Precision::Single, bounds.single);
         return match with_rounding(problem, single, survey, wide, request, evaluator) {
-            Err(Error::ToleranceBelowFloor { .. }) => {
+            Err(Error::ToleranceBelowFloor { .. }) if request.doubles => {
                 let double = of(Precision::Double, STORED + bounds.double);
                 with_rounding(problem, double, survey, wide, request, evaluator)
             }
@@ -113,12 +113,16 @@ pub(super) fn candidate(
         return series(Precision::Double);
     }
     // Layers beside it are of the floats that go with a series in 32 bits.
-    let alone = survey.beside.layers.is_empty();
+    let alone = survey.beside.layers.is_empty() && request.doubles;
     match series(Precision::Single) {
-        Err(Error::ToleranceBelowFloor { .. }) if alone => series(Precision::Double),
+        Err(below @ Error::ToleranceBelowFloor { .. }) if alone => match series(Precision::Double) {
+            // A looser tolerance has a series in 32-bit floats.
+            Err(Error::Plan(_)) => Err(below),
+            double => double,
+        },
         // A series that is given in all is never refused.
         Ok(single) if alone && single.predicted.total() > request.tolerance => Ok(match series(Precision::Double) {
-            Ok(double) if double.predicted.total() < single.predicted.total() => double,
+            Ok(double) if double.predicted.total() <= request.tolerance => double,
             _ => single,
         }),
         single => single,

@@ -257,7 +257,9 @@ impl Found {
     fn layers(&mut self, problem: &Arc<Problem>, survey: &Survey, request: &Request, series: &[Evaluator]) -> bool {
         // Where 32-bit floats are of no use, 64 may be.
         self.layers_in(Precision::Single, problem, survey, request, series)
-            || request.tolerance < BEYOND_SINGLE && self.layers_in(Precision::Double, problem, survey, request, series)
+            || request.doubles
+                && request.tolerance < BEYOND_SINGLE
+                && self.layers_in(Precision::Double, problem, survey, request, series)
     }
 
     fn layers_in(

@@ -26,6 +26,8 @@ pub struct Request {
     pub most_nodes: u32,
     /// Rounds that the renderer runs a shader's loops for one pixel.
     pub loop_rounds: usize,
+    /// Whether the device has 64-bit floats.
+    pub doubles: bool,
     /// What each kind of work costs.
     pub cost_model: CostModel,
 }
@@ -43,6 +45,7 @@ impl Request {
             // OpenGL 4.3 has no less.
             most_nodes: 16384,
             loop_rounds: usize::MAX,
+            doubles: true,
             cost_model: CostModel::default(),
         }
     }

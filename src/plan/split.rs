@@ -69,6 +69,9 @@ pub(super) fn apart(problem: &Arc<Problem>, survey: &Survey, request: &Request, 
     let bounds = direct::bounds(problem, &everywhere_weighed);
     let exact = floats == Precision::Double;
     let (precision, rounding) = if exact { (floats, bounds.double) } else { bounds.within(SUMMED * request.tolerance) };
+    if precision == Precision::Double && !request.doubles {
+        return None;
+    }
     let mut beside = Beside { precision, exact, ..Beside::default() };
     // What is stored is that of the sum, once.
     let stored = if exact { STORED } else { 0.0 };
@@ -88,7 +91,8 @@ pub(super) fn apart(problem: &Arc<Problem>, survey: &Survey, request: &Request, 
         };
         survey.effort.spend(local::work(reaching.iter().map(|group| group.ghosts).sum())).ok()?;
         let weighed = only(&survey.weighed, &reaching);
-        let (own, given) = if exact { ((part, 0.0), Some(floats)) } else { ((part, STORED), None) };
+        let given = if exact { Some(floats) } else { (!request.doubles).then_some(Precision::Single) };
+        let own = if exact { (part, 0.0) } else { (part, STORED) };
         let bounded = local::layer(problem, &weighed, &reaching, own, given, request.loop_rounds).ok()?;
         // The first layer gives the plan its name.
         beside.layers.insert(0, Layer::Local(bounded.local));

@@ -30,7 +30,7 @@ Exit codes:
   0  done
   1  a file could not be read or written, or the driver failed
   2  the command line is wrong
-  3  the tolerance is below what 32-bit floats can give, or was missed under --strict, or a bench's bar was;
+  3  the tolerance is below what can be had, or was missed under --strict, or a bench's bar was;
      or the budget is below what the cheapest plan costs
   4  there is no OpenGL 4.3, or no display to open a window on
 

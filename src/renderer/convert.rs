@@ -67,11 +67,15 @@ fn bell_file(plan: &Plan) -> &'static str {
     }
 }
 
-/// The one bell that the listed ghosts of a local layer have, or all of them.
+/// The bell's file that the listed ghosts of a local layer have, or all of them.
 pub(super) fn local_bell(local: &Local) -> &'static str {
+    local_kind(local).map_or("bells/any.glsl", |bell| bell.shape().shader())
+}
+
+/// The bell of a local layer's ghosts if they are of one kind.
+pub(super) fn local_kind(local: &Local) -> Option<&Bell> {
     let bell = local.groups.first().map_or(&Bell::Gaussian, |group| &group.bell);
-    let same = local.groups.iter().all(|group| group.bell.kind() == bell.kind());
-    if same { bell.shape().shader() } else { "bells/any.glsl" }
+    local.groups.iter().all(|group| group.bell.kind() == bell.kind()).then_some(bell)
 }
 
 /// The bell of the summed ghosts if they are of one kind.

@@ -3,7 +3,7 @@
 use glam::{DVec2, IVec2};
 use rayon::prelude::*;
 
-use super::convert::{double_ghost, weight};
+use super::convert::{self, double_ghost, weight};
 use crate::Result;
 use crate::frame::Frame;
 use crate::gpu::layout::{DoubleGhost, LocalGhost};
@@ -64,7 +64,8 @@ pub(super) fn upload(plan: &Plan, local: &Local, frame: Frame, pass: &mut LocalP
         let single: Vec<[f32; 4]> = shapes.rows.iter().map(|row| row.map(|x| x as f32)).collect();
         return pass.set_drawn(&Drawn { ghosts: &ghosts, kinds: &kinds }, &single);
     }
-    let lists = Lists::new(&placed, frame, plan::block_shift(local.side()));
+    let kinds = if convert::local_kind(local).is_some() { 1 } else { Bell::KINDS };
+    let lists = Lists::new(&placed, kinds, frame, plan::block_shift(local.side()));
     let mut ghosts: Vec<_> =
         placed.par_iter().map(|placed| double_ghost(placed.ghost, placed.weight, placed.bell)).collect();
     ghosts.push(DoubleGhost::NONE);
@@ -146,12 +147,11 @@ struct Lists {
 }
 
 impl Lists {
-    fn new(placed: &[Placed<'_>], frame: Frame, shift: u32) -> Self {
+    /// A list for each of so many kinds of bells: all of them, or the one that all ghosts have.
+    fn new(placed: &[Placed<'_>], kinds: u32, frame: Frame, shift: u32) -> Self {
         let window = frame.window;
         let blocks = [window.width, window.height].map(|side| side.div_ceil(1 << shift));
         let count = (blocks[0] * blocks[1]) as usize;
-        let several = placed.iter().any(|one| one.kind() != placed[0].kind());
-        let kinds = if several { placed.iter().map(|one| one.kind() as usize + 1).max().unwrap_or(1) } else { 1 };
         let of = |placed: &Placed<'_>| {
             let span = |axis: usize, origin: i32| {
                 let side = [window.width, window.height][axis] as i32;
@@ -160,12 +160,12 @@ impl Lists {
                 first >> shift..=last >> shift
             };
             let (columns, rows) = (span(0, window.x), span(1, window.y));
-            let kind = if several { placed.kind() as usize * count } else { 0 };
+            let kind = if kinds == 1 { 0 } else { placed.kind() as usize * count };
             rows.flat_map(move |row| columns.clone().map(move |column| kind + (row * blocks[0] + column) as usize))
         };
-        let mut lengths = vec![0usize; kinds * count];
+        let mut lengths = vec![0usize; kinds as usize * count];
         placed.iter().for_each(|placed| of(placed).for_each(|list| lengths[list] += 1));
-        let in_block = |block: usize| (0..kinds).map(|kind| lengths[kind * count + block]).sum();
+        let in_block = |block: usize| lengths.iter().skip(block).step_by(count).sum();
         let longest = (0..count).map(in_block).max().unwrap_or(0);
         let step = list_step(longest);
         let mut starts = Vec::with_capacity(lengths.len() + 1);
@@ -185,7 +185,7 @@ impl Lists {
                 next[list] += 1;
             }
         }
-        Self { numbers, kinds: kinds as u32, blocks, shift, longest }
+        Self { numbers, kinds, blocks, shift, longest }
     }
 
     fn of<'a>(&'a self, ghosts: &'a [DoubleGhost]) -> Listed<'a> {

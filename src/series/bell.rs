@@ -57,7 +57,10 @@ impl Bell {
         }
     }
 
-    /// Which bell it is, as `shaders/bells/any.glsl` counts them: each that is a shader of its own.
+    /// How many kinds there are.
+    pub(crate) const KINDS: u32 = 9;
+
+    /// Which bell it is, below [`Bell::KINDS`], as `shaders/bells/any.glsl` counts them: each that is a shader of its own.
     pub(crate) fn kind(&self) -> u32 {
         match self {
             Self::Gaussian => 0,

@@ -294,6 +294,8 @@ fn radial_series_are_never_further_off_than_their_bound() {
 fn the_shader_with_every_bell_counts_them_as_the_registry_does() {
     let any = include_str!("../../shaders/bells/any.glsl");
     let mut from = 0;
+    assert_eq!(Bell::examples().len(), Bell::KINDS as usize);
+    assert_eq!(any.matches("    RUN(").count(), Bell::KINDS as usize);
     for (kind, bell) in (0..).zip(Bell::examples()) {
         assert_eq!(bell.kind(), kind);
         let include = format!("#include \"{}\"", bell.shape().shader());

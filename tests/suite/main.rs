@@ -10,6 +10,7 @@ mod cli;
 mod composite;
 mod discs;
 mod evaluators;
+mod exact;
 mod exchange;
 mod experiments;
 mod extremes;

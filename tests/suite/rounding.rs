@@ -29,7 +29,8 @@ fn exact_but_for_rounding(ghosts: &[Ghost], frame: Frame, largest: f64, smallest
     let period = 2.6 * half + 7.5 * largest;
     let degree = (period / smallest).ceil().as_uvec2().to_array();
     let (period, degree) = (Some(period), Some(degree));
-    let request = |tolerance| Request { evaluator: Some(evaluator), period, degree, ..Request::new(tolerance) };
+    let request =
+        |tolerance| Request { evaluator: Some(evaluator), period, degree, doubles: false, ..Request::new(tolerance) };
     match plan(ghosts, frame, &request(1e-9)) {
         Err(Error::ToleranceBelowFloor { floor, .. }) => plan(ghosts, frame, &request(1.001 * floor)).unwrap(),
         plan => plan.unwrap(),

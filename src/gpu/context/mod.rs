@@ -173,6 +173,8 @@ impl Info {
 /// The driver's limits that the passes meet.
 #[derive(Debug, Clone, Copy, serde::Serialize)]
 pub struct Limits {
+    /// Whether shaders have 64-bit floats; OpenGL 4.0 asks for them, and not every driver that calls itself later gives them.
+    pub doubles: bool,
     /// Largest width and height of a texture.
     pub texture_size: u32,
     /// Largest width and height of a viewport.
@@ -344,6 +346,7 @@ fn describe(gl: &glow::Context, backend: Backend, route: String) -> Info {
         software,
         renderer,
         limits: Limits {
+            doubles: has_doubles(gl),
             texture_size: number(glow::MAX_TEXTURE_SIZE),
             viewport: viewport.map(|side| side.max(0) as u32),
             // SAFETY: the context is current, and the name is one of OpenGL 4.3.
@@ -354,5 +357,22 @@ fn describe(gl: &glow::Context, backend: Backend, route: String) -> Info {
             work_group_invocations: number(glow::MAX_COMPUTE_WORK_GROUP_INVOCATIONS),
             shared_memory: number(glow::MAX_COMPUTE_SHARED_MEMORY_SIZE),
         },
+    }
+}
+
+/// Whether a shader that computes with 64-bit floats compiles.
+fn has_doubles(gl: &glow::Context) -> bool {
+    const SOURCE: &str = "#version 430\nlayout(local_size_x = 1) in;\n\
+        layout(std430, binding = 0) buffer Numbers { double numbers[]; };\n\
+        void main() { numbers[1] = numbers[0] * numbers[0]; }\n";
+    // SAFETY: the context is current.
+    let Ok(shader) = (unsafe { gl.create_shader(glow::COMPUTE_SHADER) }) else { return false };
+    // SAFETY: the context is current, and the shader is its own.
+    unsafe {
+        gl.shader_source(shader, SOURCE);
+        gl.compile_shader(shader);
+        let compiled = gl.get_shader_compile_status(shader);
+        gl.delete_shader(shader);
+        compiled
     }
 }

@@ -280,6 +280,7 @@ mod tests {
             limits: crate::gpu::Limits {
                 texture_size: 0,
                 viewport: [0; 2],
+                doubles: true,
                 storage_block: 0,
                 uniform_block: 0,
                 storage_bindings: 0,

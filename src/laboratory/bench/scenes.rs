@@ -38,16 +38,6 @@ pub(in crate::laboratory) fn scattered(count: usize, smallest: f64, frame: Frame
     (0..count).map(one).collect()
 }
 
-/// `count` Gaussians from one size to another, each as likely, spread evenly over the picture.
-pub(super) fn between(count: usize, [smallest, largest]: [f64; 2], frame: Frame) -> Vec<Ghost> {
-    // What `scattered` has between its smallest size and twice that.
-    let sized = |ghost: Ghost| {
-        let size = smallest + (largest - smallest) * (ghost.size - 1.0);
-        Ghost { center: ghost.center / 1.1, size, ..ghost }
-    };
-    scattered(count, 1.0, frame).into_iter().map(sized).collect()
-}
-
 /// The plan of one evaluator for ghosts, at a tolerance, by the built-in cost model.
 pub(in crate::laboratory) fn by(
     evaluator: Evaluator,
@@ -69,6 +59,21 @@ pub(in crate::laboratory) fn by_hand(
     let period = Some(DVec2::new(2.0 * frame.half_width() + 2.0, 4.0));
     let request = Request { period, degree: Some(degree), evaluator: Some(evaluator), ..Request::new(1e-2) };
     plan(&Problem::new(ghosts, frame), &request)
+}
+
+/// `count` Gaussians from one size to another, each as likely, spread evenly over the picture.
+pub(super) fn between(count: usize, [smallest, largest]: [f64; 2], frame: Frame) -> Vec<Ghost> {
+    // What `scattered` has between its smallest size and twice that.
+    let sized = |ghost: Ghost| {
+        let size = smallest + (largest - smallest) * (ghost.size - 1.0);
+        Ghost { center: ghost.center / 1.1, size, ..ghost }
+    };
+    scattered(count, 1.0, frame).into_iter().map(sized).collect()
+}
+
+/// A round Gaussian.
+pub(super) fn gaussian(center: DVec2, size: f64, radiance: [f64; 3]) -> Ghost {
+    Ghost { bell: Bell::Gaussian, center, size: DVec2::splat(size), radiance }
 }
 
 /// `count` Gaussians of one size, spread evenly over the picture; benches/peers/peers.py has the same.

@@ -14,7 +14,9 @@ pub(super) fn tolerance(results: &Results) -> String {
     let text = format!(
         "Each curve is one way to compute the field (an evaluator), from a coarse tolerance at its upper end to a fine one \
          at its lower; down and left is better. Where no evaluator is named, vglare takes the ringed points. Times are \
-         medians of {} rounds in turns at {}; errors are the largest at {} pixels.",
+         medians of {} rounds in turns at {}; errors are the largest at {} pixels. Where 32-bit floats would not be exact enough \
+         the same evaluators compute in 64-bit ones, to which a curve may step; all end where the last digit of the field, which \
+         is stored in 32 bits, is rounded, at 6e-8.",
         results.rounds,
         size(results.swept),
         results.sample
@@ -35,13 +37,14 @@ fn parts(results: &Results, sweep: Sweep) -> &'static str {
 pub(super) fn degree() -> String {
     "How many harmonics are enough: the degree N along x, with M along y in the planned proportion, all N × M modes kept, in \
      the period that is planned for a fine tolerance. The bound assumes that all ghosts are worst at one pixel, so the \
-     measured error lies at or below it; both end on a floor that 32-bit floats make. Marks are the planner’s degrees for these tolerances, by the evaluator that it chooses."
+     measured error lies at or below it; both end on a floor that 32-bit floats make, which this sweep keeps to. Marks are the planner’s degrees for these tolerances, by the evaluator that it chooses."
         .to_owned()
 }
 
 pub(super) fn oversampling() -> String {
     "grid evaluates the series on a coarse lattice and interpolates. Twice the nodes make the interpolation about sixteen \
-     times as exact, until what is left is the series’ own error."
+     times as exact, until what is left is the series’ own error. In 64-bit floats, where more digits are wanted, the lattice \
+     is interpolated by eight nodes along each axis instead of four."
         .to_owned()
 }
 

@@ -48,7 +48,7 @@ fn tolerance(results: &Results) -> Option<Plot> {
     let swept = || of(results, Sweep::Tolerance);
     swept().next()?;
     let mut chart = logarithmic(
-        "Error against time, from tolerance 1e-1 to 1e-6",
+        "Error against time, from tolerance 1e-1 to 1e-7",
         "spectrum, field and composite, ms",
         "largest error, relative",
     );

@@ -30,8 +30,10 @@ const SEED: u64 = 0x5eed;
 /// # Errors
 /// [`Error::Gl`] where the driver refuses.
 pub(super) fn tolerance(study: &mut Study<'_>, watch: Watch<'_>) -> Result<Vec<Point>> {
-    let exponents: &[f64] =
-        if study.quick { &[1., 2., 3., 4., 5., 6.] } else { &[1., 1.5, 2., 2.5, 3., 3.5, 4., 4.5, 5., 5.5, 6.] };
+    let exponents: &[f64] = match study.quick {
+        true => &[1., 2., 3., 4., 5., 6., 7.],
+        false => &[1., 1.5, 2., 2.5, 3., 3.5, 4., 4.5, 5., 5.5, 6., 6.5, 7.],
+    };
     let (frame, ghosts) = (study.frame(), study.subject.ghosts);
     let (mut plans, mut refused) = (Vec::new(), Vec::new());
     let mut chosen = Vec::new();
@@ -68,12 +70,13 @@ fn rounded(value: f64) -> f64 {
     format!("{value:.1e}").parse().unwrap_or(value)
 }
 
-/// Degrees up to beyond what the planner takes, in its period, by `rows`, which adds nothing to the series' own error.
+/// Degrees up to beyond what the planner takes, in its period, by `rows` in 32-bit floats, which adds nothing to the series' own
+/// error.
 ///
 /// # Errors
 /// [`Error::Gl`] where the driver refuses.
 pub(super) fn degree(study: &mut Study<'_>, watch: Watch<'_>) -> Result<Vec<Point>> {
-    let rows = |request: Request| Request { evaluator: Some(Evaluator::Rows), ..request };
+    let rows = |request: Request| Request { evaluator: Some(Evaluator::Rows), doubles: false, ..request };
     let Some((_, tight)) = study.tightest(rows) else { return Ok(Vec::new()) };
     let last = f64::from(tight.degree()[0].clamp(2, HIGHEST)) * 1.15;
     let count = if study.quick { 12 } else { 24 };
@@ -90,12 +93,12 @@ pub(super) fn degree(study: &mut Study<'_>, watch: Watch<'_>) -> Result<Vec<Poin
     study.measured(Sweep::Degree, &plans, watch)
 }
 
-/// Lattices from barely enough to plenty, and the planner's.
+/// Lattices from barely enough to plenty, and the planner's, in 32-bit floats.
 ///
 /// # Errors
 /// [`Error::Gl`] where the driver refuses.
 pub(super) fn oversampling(study: &mut Study<'_>, watch: Watch<'_>) -> Result<Vec<Point>> {
-    let grid = |request: Request| Request { evaluator: Some(Evaluator::Grid), ..request };
+    let grid = |request: Request| Request { evaluator: Some(Evaluator::Grid), doubles: false, ..request };
     let Some((tolerance, planned)) = study.tightest(grid) else { return Ok(Vec::new()) };
     let mut plans = vec![(Some(tolerance), planned.clone())];
     for nodes in [1.1, 1.35, 1.7, 2.0, 2.5, 3.0, 4.0, 6.0, 8.0, 12.0] {
@@ -123,7 +126,7 @@ pub(super) fn storage(study: &mut Study<'_>, watch: Watch<'_>) -> Result<Vec<Poi
     let frame = study.frame();
     let mut points = Vec::new();
     for (done, tolerance) in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6].into_iter().enumerate() {
-        let request = Request { evaluator: Some(Evaluator::Rows), ..study.request(tolerance) };
+        let request = Request { evaluator: Some(Evaluator::Rows), doubles: false, ..study.request(tolerance) };
         let Ok(plan) = plan(&study.problem, &request) else { continue };
         let renderer = &mut study.bench.renderer;
         for storage in [Storage::Float, Storage::Half] {

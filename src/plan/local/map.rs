@@ -244,7 +244,8 @@ impl Part {
             let [first, end] = [area.first, area.last].map(|place| f64::from(place[axis] - origin));
             let (low, high) = ((bell.center[axis] - far).ceil(), (bell.center[axis] + far).floor());
             let (low, high) = if end > first { (low.min(first), high.max(end - 1.0)) } else { (low, high) };
-            (high >= 0.0 && low <= last).then(|| Span {
+            // Between two pixels there is none.
+            (low <= high && high >= 0.0 && low <= last).then(|| Span {
                 low: low.max(0.0) as u32,
                 high: high.min(last) as u32,
                 reached: [first as i64, end as i64],

@@ -210,8 +210,9 @@ pub(super) fn layer(
 pub(super) fn candidate(problem: &Arc<Problem>, survey: &Survey, request: &Request) -> Result<Plan> {
     let weighed = &survey.weighed;
     let left = request.tolerance - weighed.dropped_error;
+    let given = (!request.doubles).then_some(Precision::Single);
     let Bounded { local, cut, rounding } =
-        layer(problem, weighed, &survey.groups, (left, STORED), None, request.loop_rounds).map_err(
+        layer(problem, weighed, &survey.groups, (left, STORED), given, request.loop_rounds).map_err(
             |error| match error {
                 Error::ToleranceBelowFloor { floor, .. } => {
                     Error::ToleranceBelowFloor { asked: request.tolerance, floor: floor / (1.0 - share::DROPPED) }
