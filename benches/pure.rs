@@ -21,11 +21,12 @@ fn part(index: usize, irrational: f64) -> f64 {
     (0.5 + index as f64 * irrational).fract()
 }
 
-fn ghosts(count: usize) -> Vec<Ghost> {
+/// Gaussians of sizes from one to the other, every octave as likely.
+fn ghosts(count: usize, [smallest, largest]: [f64; 2]) -> Vec<Ghost> {
     let one = |k: usize| Ghost {
         bell: Bell::Gaussian,
         center: DVec2::new(3.6 * part(k, 0.754_877_666) - 1.8, 2.0 * part(k, 0.569_840_291) - 1.0),
-        size: DVec2::splat(0.1 + 0.2 * part(k, 0.618_033_989)),
+        size: DVec2::splat(smallest * (largest / smallest).powf(part(k, 0.618_033_989))),
         radiance: [part(k, 0.414_213_562), part(k, 0.732_050_808), part(k, 0.236_067_977)],
     };
     (0..count).map(one).collect()
@@ -49,10 +50,10 @@ fn night([width, height]: [u32; 2]) -> Vec<[f32; 4]> {
     pixels
 }
 
-#[divan::bench(args = [10, 1000, 100_000], max_time = 2)]
-fn plan_of_ghosts(bencher: Bencher<'_, '_>, count: usize) {
-    let frame = Frame::full(HD[0], HD[1]);
-    let (problem, request) = (Problem::new(ghosts(count), frame), Request::new(1e-3));
+#[divan::bench(args = [10, 1000, 100_000], consts = [0, 1], max_time = 2)]
+fn plan_of_ghosts<const SIZES: usize>(bencher: Bencher<'_, '_>, count: usize) {
+    let sizes = [[0.1, 0.3], [0.03, 0.5]][SIZES];
+    let (problem, request) = (Problem::new(ghosts(count, sizes), Frame::full(HD[0], HD[1])), Request::new(1e-3));
     bencher.bench(|| plan(black_box(&problem), &request).unwrap());
 }
 
@@ -60,7 +61,7 @@ fn plan_of_ghosts(bencher: Bencher<'_, '_>, count: usize) {
 fn plan_of_a_grid(bencher: Bencher<'_, '_>, tolerance: f64) {
     let frame = Frame::full(HD[0], HD[1]);
     let request = Request { evaluator: Some(Evaluator::Grid), ..Request::new(tolerance) };
-    let problem = Problem::new(ghosts(100), frame);
+    let problem = Problem::new(ghosts(100, [0.1, 0.3]), frame);
     bencher.bench(|| plan(black_box(&problem), &request).unwrap());
 }
 
@@ -72,7 +73,7 @@ fn find_lights(bencher: Bencher<'_, '_>) {
 
 #[divan::bench(max_time = 2)]
 fn reference_of_a_thousand_ghosts_at_a_thousand_points(bencher: Bencher<'_, '_>) {
-    let ghosts = ghosts(1000);
+    let ghosts = ghosts(1000, [0.1, 0.3]);
     let points: Vec<DVec2> = ghosts.iter().map(|ghost| ghost.center).collect();
     bencher.bench(|| reference::direct_at(black_box(&ghosts), black_box(&points)));
 }

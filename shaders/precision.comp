@@ -11,6 +11,9 @@ layout(std430, binding = BINDING_VALUES) writeonly buffer Values {
 
 void main() {
     uint k = gl_GlobalInvocationID.x;
+    if (k >= uint(arguments.length())) {
+        return;
+    }
     uvec4 argument = arguments[k];
     float x = uintBitsToFloat(argument.x);
     values[2u * k] = vec4(sin(x), cos(x), exp(-abs(x)), 0.0);

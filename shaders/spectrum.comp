@@ -11,7 +11,7 @@
 #include BELL
 
 const uint TILE = SPECTRUM_TILE;
-const uint BATCH = 32u;
+const uint BATCH = SPECTRUM_BATCH;
 const uint MINE = SPECTRUM_MINE;
 layout(local_size_x = SPECTRUM_TILE, local_size_y = SPECTRUM_ROWS) in;
 

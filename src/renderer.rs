@@ -25,6 +25,7 @@ mod local;
 mod mask;
 mod picture;
 mod settings;
+mod spectrum;
 mod tiles;
 mod view;
 

@@ -27,8 +27,15 @@
 #define bell_value profile
 #include "bells/profile.glsl"
 #undef bell_value
+#define bell_value disc
+#include "bells/disc.glsl"
+#undef bell_value
+#define bell_value bladed_disc
+#include "bells/bladed_disc.glsl"
+#undef bell_value
 
-// RUN(kind, function) for each of them, in the order of the registry.
+// RUN(kind, function) for each of them, in the order of the registry. There is no function that chooses a ghost's bell: Mesa's
+// software renderer would compute all of them for each ghost.
 #define EACH_BELL(RUN) \
     RUN(0, gaussian) \
     RUN(1, cosine_squared) \
@@ -36,28 +43,6 @@
     RUN(3, paraboloid) \
     RUN(4, von_mises) \
     RUN(5, sine_gaussian) \
-    RUN(6, profile)
-
-#ifdef DOUBLE
-#define real double
-#define reals dvec2
-#else
-#define real float
-#define reals vec2
-#endif
-
-// For where there is no list of each kind: the kind, in the order of the registry, is in the highest 8 bits of `bell`; the
-// size as the bells take it. Mesa's software renderer computes all of them, whatever the kind.
-real bell_value(reals offset, reals size, uint bell) {
-    uint shape = bell & 0xffffffu;
-    switch (bell >> 24) {
-    case 0u: return gaussian(offset, size, shape);
-    case 1u: return cosine_squared(offset, size, shape);
-    case 2u: return parabola(offset, size, shape);
-    case 3u: return paraboloid(offset, size, shape);
-    case 4u: return von_mises(offset, size, shape);
-    case 5u: return sine_gaussian(offset, size, shape);
-    case 6u: return profile(offset, size, shape);
-    }
-    return real(0.0);
-}
+    RUN(6, profile) \
+    RUN(7, disc) \
+    RUN(8, bladed_disc)

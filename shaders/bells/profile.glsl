@@ -2,7 +2,7 @@
 #include "shared/shapes.glsl"
 
 // The row at or before the radius; the rows' r^2 or, in 64-bit floats, their r: by that the reference finds its row, and a
-// pixel on a rim is to fall on the same side. At most 4097 rows, so 13 halvings.
+// pixel on a rim is to fall on the same side. There are no more rows than so many halvings find.
 #ifdef DOUBLE
 uint row_before(double radius, uint low, uint high) {
 #define row_at(row) shapes[row].w
@@ -10,7 +10,7 @@ uint row_before(double radius, uint low, uint high) {
 uint row_before(float radius, uint low, uint high) {
 #define row_at(row) shapes[row].x
 #endif
-    for (uint step = 0u; step < 13u; ++step) {
+    for (uint step = 0u; step < PROFILE_HALVINGS; ++step) {
         uint middle = (low + high + 1u) / 2u;
         bool later = row_at(middle) > radius;
         high = later ? middle - 1u : high;

@@ -8,7 +8,7 @@ struct Knot {
     float fraction; // past the second of them
 };
 
-// Numbers with 20 bits after the point.
+// Numbers with KNOT_BITS bits after the point.
 layout(std140, binding = BINDING_EVALUATOR) uniform Knots {
     uvec4 knots_x; // where the first pixel lies, from each to the next, and how many nodes there are; w unused
     uvec4 knots_y;
@@ -16,5 +16,6 @@ layout(std140, binding = BINDING_EVALUATOR) uniform Knots {
 
 Knot knot(uvec4 axis, int pixel) {
     uint place = axis.x + uint(pixel) * axis.y;
-    return Knot(int(place >> 20), float(int(place & 0xfffffu)) * 9.5367431640625e-7);
+    const uint one = 1u << KNOT_BITS;
+    return Knot(int(place >> KNOT_BITS), float(int(place & (one - 1u))) * (1.0 / float(one)));
 }

@@ -20,9 +20,9 @@ vec3 aces(vec3 light) {
 
 vec3 agx(vec3 light) {
     const mat3 inset = mat3(
-        0.84247906, 0.04232824, 0.042375654, 0.0784336, 0.87846864, 0.0784336, 0.07922375, 0.07916613, 0.879143);
+        0.84247906, 0.04232824, 0.042375654, 0.0784336, 0.87846864, 0.0784336, 0.079223745, 0.07916613, 0.879143);
     const mat3 outset = mat3(
-        1.196879, -0.05289685, -0.05297163, -0.09802088, 1.1519031, -0.09804345, -0.09902974, -0.09896118, 1.1510737);
+        1.196879, -0.05289685, -0.052971635, -0.09802088, 1.1519031, -0.09804345, -0.09902974, -0.09896118, 1.1510737);
     const float darkest = -12.47393;
     const float lightest = 4.026069;
     vec3 stops = log2(max(inset * light, 1e-10));
@@ -35,11 +35,11 @@ vec3 agx(vec3 light) {
 vec3 tone_mapped(vec3 light) {
     bvec3 none = equal(light, vec3(uintBitsToFloat(0xff800000u)));
     light = mix(vec3(sound(light.r), sound(light.g), sound(light.b)), vec3(0.0), none);
-#if TONE_MAP == 1
+#if TONE_MAP == TONE_MAP_REINHARD
     light = reinhard(light);
-#elif TONE_MAP == 2
+#elif TONE_MAP == TONE_MAP_ACES
     light = aces(light);
-#elif TONE_MAP == 3
+#elif TONE_MAP == TONE_MAP_AGX
     light = agx(light);
 #endif
     return clamp(light, 0.0, 1.0);

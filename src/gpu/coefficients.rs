@@ -20,13 +20,13 @@ const MOST_MODES: usize = 1 << 16;
 /// One dispatch's uniforms; as in `coefficients.comp`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-struct Dispatch {
-    sample_count: u32,
-    mode_count: u32,
-    turns: u32,
-    first_ghost: u32,
-    gain: f32,
-    pad: [f32; 3],
+pub(super) struct Dispatch {
+    pub sample_count: u32,
+    pub mode_count: u32,
+    pub turns: u32,
+    pub first_ghost: u32,
+    pub gain: f32,
+    pub pad: [f32; 3],
 }
 const _: () = assert!(size_of::<Dispatch>() == 32);
 

@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::field::Source;
-use super::layout::{PASS, PHOTO};
+use super::layout::{Binding, PASS, PHOTO};
 use super::resource::{Buffer, Scratch, Texel, Texture};
 use super::runner::Runner;
 use crate::{Error, Result};
@@ -33,8 +33,8 @@ const _: () = assert!(size_of::<Composite>() == 80);
 pub(crate) struct Variant {
     /// Where the field comes from.
     pub source: Source,
-    /// `"0"` none, `"1"` clamp to 0..1, `"2"` stretch to 0..1 by the range.
-    pub normalize: &'static str,
+    /// One of `NORMALIZE_NONE` and so on in [`super::layout`].
+    pub normalize: Binding,
     /// Whether the photo's lights are multiplied by `light_gain`.
     pub take_light: bool,
     /// Whether the photo's colours are not multiplied by alpha, which tells its lights.
@@ -44,7 +44,7 @@ pub(crate) struct Variant {
 impl Variant {
     fn defines(self) -> Vec<(&'static str, &'static str)> {
         let mut defines = self.source.defines();
-        defines.push(("NORMALIZE", self.normalize));
+        defines.push(("NORMALIZE", self.normalize.0));
         if self.take_light {
             defines.push(("TAKE_LIGHT", "1"));
             if self.straight {

@@ -19,7 +19,7 @@ pub(crate) const STEP: usize = 8;
 /// And this many before what is lost of their sum is made up for.
 pub(super) const BATCH: usize = 64;
 /// Kinds of bells, and one more for the end of the last, in whole `uvec4`.
-pub(super) const RUNS: usize = 16;
+pub(crate) const RUNS: usize = 16;
 /// What a uniform block must hold for the ghosts that fit one.
 pub(super) const FEW_BYTES: u32 = 64 << 10;
 
@@ -41,14 +41,14 @@ pub(crate) struct LatticeTile<'a> {
 /// The uniforms of `direct`, as its shaders have them.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
-struct Direct {
-    corner: [i32; 2],
-    size: [i32; 2],
-    count: u32,
-    pad: u32,
-    unit: [f32; 2],
-    aspect: [f64; 2],
-    runs: [u32; RUNS],
+pub(super) struct Direct {
+    pub corner: [i32; 2],
+    pub size: [i32; 2],
+    pub count: u32,
+    pub pad: u32,
+    pub unit: [f32; 2],
+    pub aspect: [f64; 2],
+    pub runs: [u32; RUNS],
 }
 
 /// What the evaluators keep from frame to frame.

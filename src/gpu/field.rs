@@ -56,6 +56,7 @@ pub(crate) struct FieldPass {
     field: Scratch,
     /// How often it was drawn.
     stamp: u64,
+    piece: Scratch,
     probed: Scratch,
     probes: Buffer<[i32; 2]>,
 }
@@ -63,7 +64,8 @@ pub(crate) struct FieldPass {
 impl FieldPass {
     pub fn new(runner: &Runner) -> Result<Self> {
         let probes = Buffer::new(runner.device(), 0)?;
-        Ok(Self { field: Scratch::default(), stamp: 0, probed: Scratch::default(), probes })
+        let [field, piece, probed] = [(); 3].map(|()| Scratch::default());
+        Ok(Self { field, stamp: 0, piece, probed, probes })
     }
 
     /// The field of a tile of `width` × `height` pixels, in units of its scale.
@@ -83,6 +85,29 @@ impl FieldPass {
         let field = self.field.get(runner.device(), Texel::Rgba, width, height)?;
         runner.draw_in_bands("field.frag", &source.defines(), field, bands)?;
         Ok(field)
+    }
+
+    /// Begins a field of so many columns and rows that comes in pieces.
+    pub fn begin(&mut self, runner: &Runner, [width, height]: [u32; 2]) -> Result<()> {
+        self.stamp += 1;
+        self.field.get(runner.device(), Texel::Rgba, width, height).map(drop)
+    }
+
+    /// Draws a piece of the field that was begun, in its place; the function counts its pixels from the piece's corner.
+    pub fn draw_piece(
+        &mut self,
+        runner: &Runner,
+        source: Source,
+        at: [u32; 2],
+        [width, height]: [u32; 2],
+        bands: u32,
+    ) -> Result<()> {
+        let piece = self.piece.get(runner.device(), Texel::Rgba, width, height)?;
+        runner.draw_in_bands("field.frag", &source.defines(), piece, bands)?;
+        if let Some(field) = self.field.current() {
+            field.place(piece, at);
+        }
+        Ok(())
     }
 
     /// What was drawn last, and what tells it from any other before.

@@ -107,9 +107,36 @@ pub(crate) const BINDINGS: [Binding; 33] = [
     CANVAS,
 ];
 
-/// Numbers that passes and their shaders have to agree on, for the head of every shader: work groups, and what is done in
-/// one round of a loop.
-pub(crate) const NUMBERS: [Binding; 13] = [
+/// How a value of the field becomes glare: as it is, clamped to 0..1, or stretched to 0..1 by the range.
+pub(crate) const NORMALIZE_NONE: Binding = ("NORMALIZE_NONE", 0);
+pub(crate) const NORMALIZE_CLAMP: Binding = ("NORMALIZE_CLAMP", 1);
+pub(crate) const NORMALIZE_MINMAX: Binding = ("NORMALIZE_MINMAX", 2);
+
+/// How light comes into a display's range.
+pub(crate) const TONE_MAP_NONE: Binding = ("TONE_MAP_NONE", 0);
+pub(crate) const TONE_MAP_REINHARD: Binding = ("TONE_MAP_REINHARD", 1);
+pub(crate) const TONE_MAP_ACES: Binding = ("TONE_MAP_ACES", 2);
+pub(crate) const TONE_MAP_AGX: Binding = ("TONE_MAP_AGX", 3);
+
+/// Bits after the point of a place between a lattice's nodes; those of 32 before it count whole nodes.
+pub(crate) const KNOT_BITS: u32 = 20;
+
+/// Halvings that find a row among those of a profile's table.
+pub(crate) const PROFILE_HALVINGS: u32 = 13;
+
+/// Numbers that passes and their shaders have to agree on, for the head of every shader: work groups, what is done in one
+/// round of a loop, and what else a shader counts by.
+pub(crate) const NUMBERS: [Binding; 23] = [
+    NORMALIZE_NONE,
+    NORMALIZE_CLAMP,
+    NORMALIZE_MINMAX,
+    TONE_MAP_NONE,
+    TONE_MAP_REINHARD,
+    TONE_MAP_ACES,
+    TONE_MAP_AGX,
+    ("KNOT_BITS", KNOT_BITS),
+    ("PROFILE_HALVINGS", PROFILE_HALVINGS),
+    ("SPECTRUM_BATCH", super::spectrum::BATCH),
     ("DIRECT_STEP", super::evaluators::STEP as u32),
     ("DIRECT_BATCH", super::evaluators::BATCH as u32),
     ("DIRECT_FEW_BYTES", super::evaluators::FEW_BYTES),
@@ -211,8 +238,8 @@ impl SummedGhost for DoubleGhost {
     }
 }
 
-/// Where the pixels along one axis lie between the lattice's nodes: pixel i at `start + i * pitch`, counted in 2⁻²⁰ of a
-/// node from the second node that the tile has.
+/// Where the pixels along one axis lie between the lattice's nodes: pixel i at `start + i * pitch`, counted from the second
+/// node that the tile has, with [`KNOT_BITS`] bits after the point.
 ///
 /// Integers, so that every tile gives a pixel the same place, bit for bit, and a shader needs no table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]

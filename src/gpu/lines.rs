@@ -14,9 +14,9 @@ use crate::{Error, Result};
 /// One curve's uniforms; as in `lines.vert`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-struct Uniforms {
-    window: [f32; 4],
-    colour: [f32; 4],
+pub(super) struct Uniforms {
+    pub window: [f32; 4],
+    pub colour: [f32; 4],
 }
 const _: () = assert!(size_of::<Uniforms>() == 32);
 
@@ -66,8 +66,8 @@ impl LinesPass {
             // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
             unsafe { gl.bind_vertex_array(Some(self.array)) };
             self.vertices.bind_vertices(0);
-            // SAFETY: the device keeps its context current on this thread, and the array and what it points to are
-            // there.
+            // SAFETY: the device keeps its context current on this thread; the array's one attribute is the buffer of these
+            // vertices, and no more of them are drawn than it was given.
             unsafe {
                 gl.line_width(width.min(self.widest));
                 gl.draw_arrays(glow::LINE_STRIP, 0, vertices.len() as i32);
@@ -96,7 +96,7 @@ impl Drop for LinesPass {
 /// The widest line: in a forward-compatible context anything above 1 is an error.
 fn widest_line(gl: &glow::Context) -> f32 {
     let mut range = [1.0; 2];
-    // SAFETY: the device keeps its context current on this thread, and numbers are all that it is given.
+    // SAFETY: the context is a device's, which keeps it current on this thread; the range is of two numbers.
     unsafe {
         let flags = gl.get_parameter_i32(glow::CONTEXT_FLAGS) as u32;
         if flags & glow::CONTEXT_FLAG_FORWARD_COMPATIBLE_BIT != 0 {

@@ -6,7 +6,7 @@ use std::ops::Range;
 use glow::HasContext as _;
 
 use super::context::Device;
-use super::evaluators::{Words, within_rounds};
+use super::evaluators::{STEP, Words, within_rounds};
 use super::exact::room;
 use super::layout::{CANVAS, DoubleGhost, GHOSTS, LARGEST_POINT, LocalGhost, NODES, PARTIALS, PASS, SHAPES};
 use super::resource::{Attribute, Buffer, Scratch, Texel, Texture};
@@ -46,23 +46,32 @@ pub(crate) struct Kind {
     pub quads: Range<usize>,
 }
 
-/// Ghosts in 64-bit floats, and for each block of pixels, row by row, where its list begins among the numbers that follow; and
-/// the last of the ghosts is none at all.
+/// Ghosts in 64-bit floats, the last of which is none at all, and lists of them: for each kind of bell, where there are several,
+/// and each block of pixels, row by row, where its list begins among these numbers; where the last one ends; then the lists, of
+/// multiples of [`list_step`].
 pub(crate) struct Listed<'a> {
     pub ghosts: &'a [DoubleGhost],
     pub lists: &'a [u32],
+    pub kinds: u32,
     pub blocks: [u32; 2],
     /// A block's side is this power of two.
     pub shift: u32,
-    /// Lists are multiples of this: what a shader goes through in one round.
-    pub step: usize,
+    /// The most ghosts that any block has, of all kinds together.
+    pub longest: usize,
+}
+
+/// Ghosts that are summed in one round of a loop: no more than one, since what fills a list up costs as much as a ghost, but where
+/// a block has so many that a software renderer would not go through as many rounds.
+pub(crate) fn list_step(longest: usize) -> usize {
+    const MANY: usize = 1 << 15;
+    if longest > MANY { STEP } else { 1 }
 }
 
 /// What is on the device of either.
 enum Scene {
     Nothing,
     Drawn(Vec<Batches>),
-    Listed { columns: u32, shift: u32, bands: u32, step: u32 },
+    Listed { columns: u32, blocks: u32, shift: u32, step: usize, bands: u32 },
 }
 
 /// The ghosts of one kind of bell as so many draws.
@@ -143,20 +152,15 @@ impl LocalPass {
     /// # Errors
     /// [`Error::Gl`] where the driver refuses, or a list is longer than the software renderer goes through for one pixel.
     pub fn set_listed(&mut self, runner: &Runner, listed: &Listed<'_>, shapes: &[[f64; 4]]) -> Result<()> {
-        let [columns, rows] = listed.blocks;
-        let starts = &listed.lists[..=(columns * rows) as usize];
-        let longest = starts.windows(2).map(|pair| (pair[1] - pair[0]) as usize).max().unwrap_or(0);
-        within_rounds(runner, longest / listed.step, "local", longest, "ghosts")?;
+        let &Listed { kinds, blocks: [columns, rows], shift, longest, .. } = listed;
+        let (blocks, step) = (columns * rows, list_step(longest));
+        within_rounds(runner, longest / step + kinds as usize, "local", longest, "ghosts")?;
         self.doubles.store(listed.ghosts)?;
         self.lists.store(listed.lists)?;
         self.shapes.store(bytemuck::cast_slice(shapes))?;
-        let bells = f64::from(1u32 << (2 * listed.shift)) * (listed.lists.len() - starts.len()) as f64;
-        self.scene = Scene::Listed {
-            columns,
-            shift: listed.shift,
-            bands: (bells / MOST_LISTED).ceil() as u32,
-            step: listed.step as u32,
-        };
+        let places = listed.lists.len() - (kinds * blocks) as usize;
+        let bands = (f64::from(1u32 << (2 * shift)) * places as f64 / MOST_LISTED).ceil() as u32;
+        self.scene = Scene::Listed { columns, blocks, shift, step, bands };
         Ok(())
     }
 
@@ -194,25 +198,13 @@ impl LocalPass {
                     one(bell, quads, false)?;
                 }
             }
-            &Scene::Listed { columns, shift, bands, step } => {
+            &Scene::Listed { columns, blocks, shift, step, bands } => {
                 let (window, aspect) = (frame.window, frame.pixel_aspect.to_bits());
                 let [low, high] = [aspect as u32 as i32, (aspect >> 32) as i32];
                 let [x, y] = corner;
                 let size = [frame.width as i32, frame.height as i32];
-                let words = [
-                    x,
-                    y,
-                    size[0],
-                    size[1],
-                    window.x,
-                    window.y,
-                    columns as i32,
-                    shift as i32,
-                    low,
-                    high,
-                    width as i32,
-                    0,
-                ];
+                let [columns, blocks, shift, wide] = [columns, blocks, shift, width].map(|number| number as i32);
+                let words = [x, y, size[0], size[1], window.x, window.y, columns, blocks, shift, wide, low, high];
                 self.tile.store(&[words])?;
                 self.doubles.bind_storage(GHOSTS);
                 self.lists.bind_storage(PARTIALS);
@@ -285,7 +277,8 @@ fn add(
         // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
         unsafe { gl.bind_vertex_array(Some(how.array)) };
         ghosts.bind_attributes(&ATTRIBUTES, u32::from(!how.points));
-        // SAFETY: the device keeps its context current on this thread, and the array and what it points to are there.
+        // SAFETY: the device keeps its context current on this thread; the array's attributes are the buffer of ghosts, which
+        // has those of every range: `set_drawn` took the ranges from the very slice that it stored.
         unsafe {
             // Points are clipped by their centres, and these may lie beyond the tile.
             gl.viewport(-margin, -margin, width + 2 * margin, height + 2 * margin);

@@ -20,7 +20,9 @@
 //! | `shrink`, `view` | means of the picture, where it is made smaller; the picture as a display shows it |
 //! | `precision` | how exact the driver's sin, cos and exp are, and vglare's phases |
 
-// Calling OpenGL is unsafe; each block says what makes it sound.
+// Calling OpenGL is unsafe; each block says what makes it sound. That a device keeps its context current on this thread rests
+// on these: a device never leaves its thread; no more than one is opened on a thread at a time; one that was abandoned gives
+// no functions; and who adopts a context promises it. So whatever lives on a thread is of the one device, and "its own".
 #![allow(unsafe_code)]
 
 pub(crate) mod coefficients;

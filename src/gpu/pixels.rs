@@ -96,7 +96,7 @@ impl PixelBuffer {
         let bytes = bytes(width, height)?;
         limits::room(bytes as u64, "a tile of pixels")?;
         let gl = self.device.gl();
-        // SAFETY: the device keeps its context current on this thread, and the slice says how long it is.
+        // SAFETY: the device keeps its context current on this thread, and the buffer is its own.
         unsafe {
             gl.bind_buffer(target, Some(self.raw));
             gl.buffer_data_size(target, bytes, usage);
@@ -115,12 +115,14 @@ impl PixelBuffer {
     ) -> Result<()> {
         let bytes = bytes(width, height)?;
         let gl = self.device.gl();
-        // SAFETY: the device keeps its context current on this thread, and the buffer that is bound has as many bytes.
+        // SAFETY: the device keeps its context current on this thread; GL gives null where the buffer that is bound has fewer
+        // bytes.
         let memory = unsafe { gl.map_buffer_range(target, 0, bytes, access) };
         if !memory.is_null() {
             let pixels = width as usize * height as usize;
-            // SAFETY: the mapped memory holds as many pixels, and GL 4.2 and later align it to 64 bytes. Nothing else has it
-            // until it is unmapped; what is mapped for reading is not written to by the callers above.
+            // SAFETY: the mapped memory holds as many pixels, GL 4.2 and later align it to 64 bytes, and any bits are an f32.
+            // Nothing else has it until it is unmapped; `drain` only reads what it maps for reading, and `fill` only writes
+            // what it maps for writing.
             work(unsafe { std::slice::from_raw_parts_mut(memory.cast(), pixels) });
             // SAFETY: the buffer is bound and mapped, and nobody keeps the memory.
             unsafe { gl.unmap_buffer(target) };

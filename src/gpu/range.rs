@@ -10,10 +10,10 @@ use crate::Result;
 /// One step's uniforms; as in `range.frag`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-struct Step {
-    scale: [f32; 4],
-    size: [i32; 2],
-    pad: [i32; 2],
+pub(super) struct Step {
+    pub scale: [f32; 4],
+    pub size: [i32; 2],
+    pub pad: [i32; 2],
 }
 const _: () = assert!(size_of::<Step>() == 32);
 

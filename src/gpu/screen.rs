@@ -49,8 +49,9 @@ impl Screen {
         let gl = device.gl();
         // SAFETY: the device keeps its context current on this thread.
         let texture = unsafe { gl.create_texture() }.map_err(refused)?;
-        // SAFETY: the device keeps its context current on this thread.
-        let framebuffer = unsafe { gl.create_framebuffer() }.map_err(refused)?;
+        // SAFETY: the device keeps its context current on this thread, and the texture is its own.
+        let framebuffer =
+            unsafe { gl.create_framebuffer().inspect_err(|_| gl.delete_texture(texture)) }.map_err(refused)?;
         let (width, height) = (size[0] as i32, size[1] as i32);
         // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
         let status = unsafe {
@@ -112,7 +113,7 @@ impl Screen {
     pub fn clear(&self, [red, green, blue]: [f32; 3]) {
         self.target(self.whole());
         let gl = self.device.gl();
-        // SAFETY: the device keeps its context current on this thread, and numbers are all that it is given.
+        // SAFETY: the device keeps its context current on this thread, and a colour has four numbers.
         unsafe { gl.clear_buffer_f32_slice(glow::COLOR, 0, &[red, green, blue, 1.0]) }
     }
 

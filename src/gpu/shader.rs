@@ -25,7 +25,9 @@ macro_rules! sources {
 /// Every file of `shaders/`.
 const SOURCES: &[(&str, &str)] = &sources![
     "bells/any.glsl",
+    "bells/bladed_disc.glsl",
     "bells/cosine_squared.glsl",
+    "bells/disc.glsl",
     "bells/gaussian.glsl",
     "bells/parabola.glsl",
     "bells/paraboloid.glsl",
@@ -170,8 +172,9 @@ impl Program {
     /// Runs a compute program, and makes what it stores visible to every later pass.
     pub fn dispatch(&self, groups: [u32; 3]) {
         self.bind();
-        // SAFETY: the device keeps its context current on this thread; the shader reads and writes within what is
-        // bound, as GL holds it to.
+        // SAFETY: the device keeps its context current on this thread. OpenGL 4.3 does not keep a shader from reading and
+        // writing beside what is bound; each shader stops at the counts that its pass gives it or at the buffer's own length,
+        // and each pass makes its buffers for these counts.
         unsafe {
             self.device.gl().dispatch_compute(groups[0], groups[1], groups[2]);
             self.device.gl().memory_barrier(glow::SHADER_STORAGE_BARRIER_BIT);
@@ -279,6 +282,29 @@ mod tests {
         found.sort();
         let embedded: Vec<_> = SOURCES.iter().map(|(name, _)| name.to_string()).collect();
         assert_eq!(found, embedded, "SOURCES, sorted, must list the files of shaders/");
+    }
+
+    #[test]
+    fn every_number_that_is_defined_is_used_and_every_one_that_is_compared_with_is_defined() {
+        let words = |text: &'static str| text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+        let used: Vec<_> = SOURCES.iter().flat_map(|(_, source)| words(source)).collect();
+        // What no shader asks for, since it is what is left where nothing is done.
+        let left = ["NORMALIZE_NONE", "TONE_MAP_NONE"];
+        let defined: Vec<_> = BINDINGS.into_iter().chain(NUMBERS).map(|(name, _)| name).collect();
+        // Some are Rust's alone.
+        for name in defined.iter().filter(|name| !left.contains(name) && !name.starts_with("UNIT_WORKBENCH")) {
+            assert!(used.contains(name), "no shader uses {name}");
+        }
+        let mut compared = 0;
+        for (path, source) in SOURCES {
+            for line in source.lines().filter(|line| line.starts_with("#if ") || line.starts_with("#elif ")) {
+                if let Some((_, number)) = line.split_once(" == ") {
+                    assert!(defined.contains(&number), "{path}: {line}: is not defined, and would be 0");
+                    compared += 1;
+                }
+            }
+        }
+        assert!(compared >= 5, "{compared}");
     }
 
     #[test]

@@ -26,15 +26,15 @@ pub(crate) struct Place {
 /// One axis' uniforms; as in `shrink.frag`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-struct Axis {
-    origin: f32,
-    pitch: f32,
-    end: f32,
-    taps: i32,
-    stride: i32,
-    aside: i32,
-    last: i32,
-    pad: i32,
+pub(super) struct Axis {
+    pub origin: f32,
+    pub pitch: f32,
+    pub end: f32,
+    pub taps: i32,
+    pub stride: i32,
+    pub aside: i32,
+    pub last: i32,
+    pub pad: i32,
 }
 const _: () = assert!(size_of::<Axis>() == 32);
 

@@ -10,11 +10,15 @@ use crate::Result;
 pub(super) const TILE: u32 = 8;
 /// And so many of a tile's are one invocation's.
 pub(super) const MINE: u32 = 4;
+/// Ghosts whose factors a work group prepares together.
+pub(super) const BATCH: u32 = 32;
 /// A slice is at least this many ghosts: fewer would cost more in summing slices than they win in parallel.
 const SHORTEST_SLICE: usize = 128;
-/// And at most this many: a longer one would need more rounds of its loops than Mesa's software renderer runs (65535;
-/// 49 for each 32 ghosts) before it ends them without a word.
+/// And at most this many: a longer one would need more rounds of its loops than Mesa's software renderer runs (65535) before
+/// it ends them without a word. A batch takes one for each ghost, and less than so many others.
 const LONGEST_SLICE: usize = 1 << 15;
+const BESIDE: usize = 17;
+const _: () = assert!(LONGEST_SLICE / BATCH as usize * (BATCH as usize + BESIDE) <= 65535);
 /// And there are at most this many slices.
 const MOST_SLICES: usize = 64;
 /// Room for the slices' sums, in vec4s: 32 MiB.

@@ -1,16 +1,17 @@
 //! What Rust and GLSL agree on: shaders echo the structs field by field, and the harmonics are held to f64.
 
+mod uniforms;
+
 use std::f64::consts::TAU;
 use std::rc::Rc;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use bytemuck::{Pod, Zeroable as _};
 
-use super::composite::Composite;
 use super::context::{Backend, Device};
 use super::harmonics::Harmonics;
 use super::layout::{
-    Binding, DirectGhost, DoubleGhost, EVALUATOR, FEW_GHOSTS, GHOSTS, HARMONICS_X, Knots, PARTIALS, PASS, SpectralGhost,
+    Binding, DirectGhost, DoubleGhost, EVALUATOR, FEW_GHOSTS, GHOSTS, HARMONICS_X, Knots, PARTIALS, SpectralGhost,
 };
 use super::resource::Buffer;
 use super::runner::Runner;
@@ -195,29 +196,6 @@ fn shaders_read_knots_as_they_are_written() {
 }
 
 #[test]
-fn shaders_read_the_uniforms_of_the_composite_as_they_are_written() {
-    let uniforms = Composite {
-        scale: [1.0, 2.0, 3.0, 4.0],
-        constant: [5.0, 6.0, 7.0, 8.0],
-        light_gain: [9.0, 10.0, 11.0, 12.0],
-        luminance: [13.0, 14.0, 15.0, 16.0],
-        strength: 17.0,
-        flat: 18.0,
-        pad: [19.0, 20.0],
-    };
-    let scalars = ["strength", "flat_span", "pad0", "pad1"].map(|name| format!("floatBitsToUint({name})"));
-    let vectors = ["scale", "constant", "light_gain", "luminance"].map(|name| components(name, 4, true));
-    let view = View {
-        declarations: vec![declaration("composite.frag", "layout(std140, binding = BINDING_PASS)")],
-        uniform: true,
-        binding: PASS,
-        words: [vectors.concat(), scalars.to_vec()].concat(),
-    };
-    let expected: Vec<u32> = (1..=20u8).map(|value| f32::from(value).to_bits()).collect();
-    on_each_backend(|device| assert_eq!(view.echo(device, &[uniforms]), expected));
-}
-
-#[test]
 fn an_echo_of_other_fields_is_not_what_was_written() {
     let knots = [Knots { start: 1, pitch: 2, nodes: 3, pad: 4 }, Knots { start: 5, pitch: 6, nodes: 7, pad: 8 }];
     let view = View {
@@ -229,6 +207,29 @@ fn an_echo_of_other_fields_is_not_what_was_written() {
         words: ["knots_x", "knots_y"].map(|name| components(name, 4, false)).concat(),
     };
     on_each_backend(|device| assert_eq!(view.echo(device, &knots), [5, 6, 7, 8, 1, 2, 3, 4]));
+}
+
+#[test]
+fn a_thread_has_one_device_at_a_time_and_none_that_was_abandoned_is_used() {
+    let _turn = turn();
+    let run = || {
+        let first = Device::open(&[Backend::Egl]).expect("these tests need GL");
+        let refusal = Device::open(&Backend::ALL).unwrap_err().to_string();
+        assert!(refusal.contains("open on this thread already"), "{refusal}");
+        assert!(Device::try_open(Backend::OsMesa).is_err());
+        // The first is current still.
+        Buffer::from_slice(&first, &[1u32, 2]).unwrap();
+        drop(first);
+        let second = Device::open(&[Backend::Egl]).unwrap();
+        let left = Buffer::from_slice(&second, &[1u32, 2]).unwrap();
+        second.abandon();
+        assert!(second.is_lost());
+        let third = Device::open(&[Backend::OsMesa]).unwrap();
+        assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| left.read(2))).is_err());
+        drop(left);
+        assert_eq!(Buffer::from_slice(&third, &[3u32, 4]).unwrap().read(2), [3, 4]);
+    };
+    std::thread::scope(|scope| scope.spawn(run).join()).unwrap_or_else(|panic| std::panic::resume_unwind(panic));
 }
 
 /// The largest error of cos and sin of n times each phase, against f64, of the phases as they are.

@@ -40,6 +40,8 @@ pub use computer::Computer;
 pub use done::{Computed, Done};
 pub use found::Found;
 pub use planned::Planned;
+#[cfg(feature = "laboratory")]
+pub(crate) use planning::request;
 pub use planning::{Planning, plan};
 pub use settings::{bright_light, settings};
 pub use watch::{Step, Unwatched, Watch};

@@ -25,6 +25,19 @@ pub struct Planning {
     pub warnings: Vec<String>,
 }
 
+/// What is asked of a plan at a tolerance on a device, or, without one, on a device without limits.
+pub(crate) fn request(device: Option<&Info>, tolerance: f64, cost_model: CostModel) -> Request {
+    let unlimited = Request { cost_model, ..Request::new(tolerance) };
+    device.map_or(unlimited, |info| Request {
+        loop_rounds: info.loop_rounds().unwrap_or(usize::MAX),
+        doubles: info.limits.doubles,
+        // A term takes three vec4.
+        most_terms: (info.limits.storage_block / 48) as usize,
+        most_nodes: info.limits.texture_size,
+        ..unlimited
+    })
+}
+
 /// The plan for a problem on a device, or, without one, on a device without limits; by what is known of its speed.
 ///
 /// # Errors
@@ -36,18 +49,7 @@ pub fn plan(accuracy: &Accuracy, problem: &Arc<Problem>, device: Option<&Info>, 
         Goal::Tolerance(tolerance) => tolerance,
         Goal::Budget(_) => plan::LOOSEST,
     };
-    let unlimited = Request::new(asked);
-    let request = Request {
-        period,
-        degree,
-        evaluator,
-        loop_rounds: device.and_then(Info::loop_rounds).unwrap_or(usize::MAX),
-        doubles: device.is_none_or(|info| info.limits.doubles),
-        // A term takes three vec4.
-        most_terms: device.map_or(unlimited.most_terms, |info| (info.limits.storage_block / 48) as usize),
-        cost_model: known.model,
-        ..unlimited
-    };
+    let request = Request { period, degree, evaluator, ..request(device, asked, known.model) };
     let (plan, note) = match goal {
         Goal::Budget(budget) => (plan::plan_within(problem, &request, budget)?, None),
         Goal::Tolerance(_) if allow_floor => {

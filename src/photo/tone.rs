@@ -89,6 +89,27 @@ mod tests {
 
     const ALL: [ToneMap; 4] = [ToneMap::None, ToneMap::Reinhard, ToneMap::Aces, ToneMap::Agx];
 
+    /// Numbers of four digits and more, in order, of what lies between two lines.
+    fn numbers(text: &str, from: &str, to: &str) -> Vec<f64> {
+        let from = text.find(from).unwrap();
+        let to = from + text[from..].find(to).unwrap();
+        let code: Vec<&str> = text[from..to].lines().map(|line| line.split("//").next().unwrap_or_default()).collect();
+        let code = code.join("\n").replace('_', "");
+        let words = code.split(|c: char| !c.is_ascii_digit() && c != '.');
+        words.filter(|word| word.len() >= 5).filter_map(|word| word.parse().ok()).collect()
+    }
+
+    #[test]
+    fn the_shader_has_the_same_numbers() {
+        let shader = include_str!("../../shaders/shared/tone.glsl");
+        let mut here = numbers(include_str!("tone.rs"), "fn aces", "#[cfg(test)]");
+        let mut there = numbers(shader, "vec3 aces", "// Linear Rec.709");
+        here.sort_by(f64::total_cmp);
+        there.sort_by(f64::total_cmp);
+        assert_eq!(here, there);
+        assert!(here.len() > 40, "{}", here.len());
+    }
+
     #[test]
     fn greys_rise_from_black_to_white_and_stay_grey() {
         for map in ALL {

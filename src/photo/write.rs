@@ -58,8 +58,8 @@ pub fn check_target(path: &Path, photo: &Photo, options: &WriteOptions) -> Resul
 /// # Errors
 /// [`Error::Write`] for an extension that is no format, or a depth that the format cannot hold.
 pub fn largest_value(path: &Path, photo: &Photo, options: &WriteOptions) -> Result<f32> {
-    let depth = Format::from_extension(path).and_then(|format| depth(format, photo, options.depth));
-    Ok(match depth.map_err(|reason| Error::write(path, reason))? {
+    let (_, depth) = kind(path, photo, options).map_err(|reason| Error::write(path, reason))?;
+    Ok(match depth {
         Depth::Half => half::f16::MAX.to_f32(),
         Depth::Float => f32::MAX,
         Depth::Uint => u32::MAX as f32,
@@ -106,13 +106,15 @@ impl Plan {
 }
 
 fn plan(path: &Path, photo: &Photo, options: &WriteOptions) -> Result<Plan> {
+    // Field by field: a new one has to be used here, or not to be.
+    let &WriteOptions { depth: asked, exposure, tone_map, overwrite } = options;
     let resolved = Format::from_extension(path).and_then(|format| {
         check_picture(photo, format)?;
-        let depth = depth(format, photo, options.depth)?;
-        Ok((format, depth, look(format, depth, photo, options)?))
+        let depth = depth(format, photo, asked)?;
+        Ok((format, depth, look(format, depth, photo, exposure, tone_map)?))
     });
     let (format, depth, look) = resolved.map_err(|reason| Error::write(path, reason))?;
-    Ok(Plan { format, depth, look, target: Target::new(path, options.overwrite)? })
+    Ok(Plan { format, depth, look, target: Target::new(path, overwrite)? })
 }
 
 /// The format and the depth that a photo is written in.
@@ -120,8 +122,9 @@ fn plan(path: &Path, photo: &Photo, options: &WriteOptions) -> Result<Plan> {
 /// # Errors
 /// Where the name or the options ask for what there is not.
 pub(super) fn kind(path: &Path, photo: &Photo, options: &WriteOptions) -> Result<(Format, Depth), Reason> {
+    let &WriteOptions { depth: asked, exposure: _, tone_map: _, overwrite: _ } = options;
     let format = Format::from_extension(path)?;
-    Ok((format, depth(format, photo, options.depth)?))
+    Ok((format, depth(format, photo, asked)?))
 }
 
 fn check_picture(photo: &Photo, format: Format) -> Result<(), Reason> {
@@ -156,15 +159,15 @@ fn depth(format: Format, photo: &Photo, asked: Option<Depth>) -> Result<Depth, R
     }
 }
 
-fn look(format: Format, depth: Depth, photo: &Photo, options: &WriteOptions) -> Result<Look, Reason> {
-    if !options.exposure.is_finite() {
-        return Err(format!("an exposure of {} stops makes no picture", options.exposure).into());
+fn look(format: Format, depth: Depth, photo: &Photo, exposure: f64, tone_map: Option<ToneMap>) -> Result<Look, Reason> {
+    if !exposure.is_finite() {
+        return Err(format!("an exposure of {exposure} stops makes no picture").into());
     }
-    let asks = options.exposure != 0.0 || options.tone_map.is_some_and(|map| map != ToneMap::None);
+    let asks = exposure != 0.0 || tone_map.is_some_and(|map| map != ToneMap::None);
     if asks && !depth.is_display() {
         let (format, depth) = (format.name(), depth.name());
         return Err(format!("{depth} {format} holds scene-linear light, which gets no exposure and no tone map").into());
     }
     let fallback = if photo.source.display_referred { ToneMap::None } else { ToneMap::default() };
-    Ok(Look { gain: options.exposure.exp2() as f32, tone_map: options.tone_map.unwrap_or(fallback) })
+    Ok(Look { gain: exposure.exp2() as f32, tone_map: tone_map.unwrap_or(fallback) })
 }

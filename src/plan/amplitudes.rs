@@ -9,10 +9,10 @@ use std::time::Instant;
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::Group;
 use super::modes::{Mode, Modes};
 use super::rounding::Strength;
 use super::weigh::weight;
+use super::{CostModel, Group, Transform, gather};
 use crate::scene::Ghost;
 use crate::series::{Factor, Modes as Bells, kappa};
 
@@ -34,15 +34,22 @@ pub(super) fn worth_a_try(groups: &[Group]) -> bool {
 /// Whether to look at so many modes: where the plan needs to know them for any series at all, at more of them.
 pub(super) fn worth_looking(groups: &[Group], counts: &[u32], needed: bool) -> bool {
     let modes: usize = counts.iter().map(|&count| count as usize).sum();
-    let few = modes.saturating_mul(members(groups)) <= EFFORT;
+    let apart = groups.iter().filter(|group| !matches!(group.transform, Transform::Gather(_)));
+    let few = modes.saturating_mul(apart.map(|group| group.members.len()).sum()) <= EFFORT
+        && work(groups, counts) <= MOST_WORK;
     modes <= MOST_MODES && (few || needed && work(groups, counts) <= MOST_WORK)
 }
 
+/// What a ghost takes for each mode, about, in nanoseconds.
+pub(super) const MODE: f64 = 3.0;
+
 /// What looking at so many modes costs about, in nanoseconds.
 pub(super) fn work(groups: &[Group], counts: &[u32]) -> f64 {
-    const MODE: f64 = 3.0;
     const TRANSFORM: f64 = 15.0;
     let one = |group: &Group| {
+        if let Transform::Gather(_) = group.transform {
+            return gather::cost(group, &group.transform, &CostModel { pass: 0.0, ..CostModel::default() });
+        }
         let [n, m] = group.degree;
         let mine = counts.iter().take(n as usize + 1).map(|&count| count.min(m + 1));
         let (modes, ghosts) = (mine.map(f64::from).sum::<f64>(), group.members.len() as f64);
@@ -182,6 +189,40 @@ struct View<'a> {
 impl View<'_> {
     /// The sums over all groups, of every mode that each of them adds to, but for the modes' weights κ.
     fn sums(&self, groups: &[Group]) -> Sums {
+        let gathered = |group: &&Group| matches!(group.transform, Transform::Gather(_));
+        let (gathered, others): (Vec<&Group>, Vec<&Group>) = groups.iter().partition(gathered);
+        let mut sums = self.one_by_one(&others);
+        gathered.into_iter().for_each(|group| self.add_gathered(&mut sums, group));
+        sums
+    }
+
+    /// Adds a group's sums for each of a few sizes, times the coefficients of these: those of an even bell.
+    fn add_gathered(&self, sums: &mut Sums, group: &Group) {
+        let (Transform::Gather(gathering), Bells::Product(factor)) = (&group.transform, group.bell.shape().modes())
+        else {
+            return;
+        };
+        let columns = group.degree[0] as usize + 1;
+        for (size, gathered) in gathering.sums(self.ghosts, group, self.period, self.scale) {
+            let size = size / self.period;
+            let [x, y] = [(0, size.x), (1, size.y)].map(|(axis, size)| factor.coefficients(group.degree[axis], size));
+            let mut rest = &mut sums.0[..];
+            for (n, ([a, _], &count)) in x.iter().zip(self.counts).enumerate() {
+                let (row, others) = rest.split_at_mut(count as usize);
+                for (m, (sums, [b, _])) in row.iter_mut().zip(&y).enumerate() {
+                    for (colour, waves) in gathered[m * columns + n].iter().enumerate() {
+                        let [cos_cos, cos_sin, sin_cos, sin_sin] = waves.map(|wave| a * b * wave);
+                        for (part, value) in [cos_cos, -sin_cos, -cos_sin, sin_sin].into_iter().enumerate() {
+                            sums[3 * part + colour] += value;
+                        }
+                    }
+                }
+                rest = others;
+            }
+        }
+    }
+
+    fn one_by_one(&self, groups: &[&Group]) -> Sums {
         let modes = self.counts.iter().map(|&count| count as usize).sum();
         let batches: Vec<Sums> = batches(groups).par_iter().map(|batch| self.batch(batch, modes)).collect();
         let mut batches = batches.into_iter();
@@ -205,6 +246,8 @@ impl View<'_> {
                     let size = group.smallest / self.period;
                     sums.add_times(&phases, &radial.means(self.counts, size));
                 }
+                // Finding modes enough for it has failed before anyone looks at them.
+                Bells::None => {}
             }
         }
         sums
@@ -223,8 +266,8 @@ impl View<'_> {
 }
 
 /// The ghosts of all groups in batches of about [`CHUNK`], each with the group that its ghosts belong to.
-fn batches(groups: &[Group]) -> Vec<Vec<(&Group, &[u32])>> {
-    let pieces = groups.iter().flat_map(|group| group.members.chunks(CHUNK).map(move |members| (group, members)));
+fn batches<'a>(groups: &[&'a Group]) -> Vec<Vec<(&'a Group, &'a [u32])>> {
+    let pieces = groups.iter().flat_map(|&group| group.members.chunks(CHUNK).map(move |members| (group, members)));
     let mut batches: Vec<Vec<(&Group, &[u32])>> = Vec::new();
     let mut room = 0;
     for piece in pieces {

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::direct::STORED;
 use super::effort::Effort;
 use super::period::{self, Reach};
+use super::request::GHOSTS_A_ROUND;
 use super::series::{self, Wide};
 use super::weigh::{self, Weighed};
 use super::{Evaluator, Group, Layer, Plan, Precision, Prediction, Request, cost, direct, rounding, share, terms};
@@ -61,6 +62,11 @@ impl Survey {
 }
 
 impl Survey {
+    /// Ghosts that are not dropped.
+    pub fn kept(&self) -> usize {
+        self.groups.iter().map(|group| group.ghosts).sum()
+    }
+
     /// Takes note of what it costs to have each bell ready for a series, once.
     ///
     /// # Errors
@@ -76,7 +82,7 @@ impl Survey {
             }
         }
         let ready = bells.iter().map(|bell| match bell.shape().modes() {
-            Modes::Product(_) => 0.0,
+            Modes::Product(_) | Modes::None => 0.0,
             Modes::Radial(radial) => radial.preparation(),
         });
         self.effort.spend(ready.sum())
@@ -190,6 +196,12 @@ pub(super) fn made(
     }
 }
 
+/// Rounds of a loop that `direct` takes for so many ghosts: eight of them a round where there are many, and a few rounds more to
+/// gather them.
+pub(super) fn rounds(ghosts: usize) -> usize {
+    ghosts / (GHOSTS_A_ROUND - 1)
+}
+
 /// The plan of one evaluator in some floats.
 fn with_rounding(
     problem: &Arc<Problem>,
@@ -235,9 +247,8 @@ fn with_rounding(
         layers.extend(survey.beside.layers.iter().cloned());
     }
     let plan = made(problem, weighed, request, layers, summed, predicted);
-    // `direct` takes eight ghosts a round where there are many, and a few rounds more to gather them.
     let rounds = match evaluator {
-        Evaluator::Direct => plan.ghosts() / 7,
+        Evaluator::Direct => rounds(plan.ghosts()),
         Evaluator::Series => plan.terms() + plan.counts().len() + plan.summed(),
         Evaluator::Rows | Evaluator::Grid | Evaluator::Local => 0,
     };

@@ -367,6 +367,9 @@ fn in_gaussians(bell: &Bell, precision: Precision) -> f64 {
         Bell::VonMises(_) | Bell::SineGaussian(_) => [2.5, 5.5],
         // A row is looked for.
         Bell::Profile(_) => [7.5, 7.5],
+        Bell::Disc(disc) if disc.is_round() => [1.5, 2.5],
+        // Three rows of a table are read.
+        Bell::Disc(_) => [5.0, 7.5],
     };
     if precision == Precision::Single { single } else { double }
 }
@@ -379,14 +382,10 @@ pub(super) fn local<'a>(
     frame: Frame,
     model: &CostModel,
 ) -> f64 {
-    // Where there are several kinds, each listed ghost is computed as all of them.
-    const EVERY_KIND: f64 = 27.0;
     let (mut ghosts, mut bells) = (0.0, 0.0);
-    let (mut first, mut several) = (None, false);
     for group in groups {
         ghosts += group.ghosts as f64;
         bells += group.ghosts as f64 * in_gaussians(&group.bell, precision);
-        several |= *first.get_or_insert(group.bell.kind()) != group.bell.kind();
     }
     let pixels = frame.window.pixels() as f64;
     let canvas = pixels * model.canvas + 2.0 * model.pass + ghosts * model.quad;
@@ -395,10 +394,7 @@ pub(super) fn local<'a>(
     }
     match precision {
         Precision::Single => reached * splat(bells / ghosts, model) + canvas,
-        Precision::Double => {
-            let bell = if several { EVERY_KIND } else { bells / ghosts };
-            listed(ghosts, reached.min(ghosts * pixels), bell, model) + canvas
-        }
+        Precision::Double => listed(ghosts, reached.min(ghosts * pixels), bells / ghosts, model) + canvas,
     }
 }
 

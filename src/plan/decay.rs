@@ -7,13 +7,23 @@ use std::f64::consts::TAU;
 use glam::DVec2;
 
 use super::{Group, HIGHEST_DEGREE};
-use crate::series::{Factor, Modes, Radial};
+use crate::series::{Bell, Factor, Modes, Radial};
 use crate::{Error, Result};
 
 /// What the coefficients of a group's bell are at most.
 pub(super) enum Decay<'a> {
-    Product { factor: &'a dyn Factor, size: DVec2 },
-    Radial { radial: &'a dyn Radial, size: DVec2 },
+    Product {
+        factor: &'a dyn Factor,
+        size: DVec2,
+    },
+    Radial {
+        radial: &'a dyn Radial,
+        size: DVec2,
+    },
+    /// There is no series.
+    None {
+        bell: &'a Bell,
+    },
 }
 
 /// What a factor has beyond each harmonic along one axis.
@@ -45,6 +55,7 @@ impl<'a> Decay<'a> {
         match group.bell.shape().modes() {
             Modes::Product(factor) => Self::Product { factor, size },
             Modes::Radial(radial) => Self::Radial { radial, size },
+            Modes::None => Self::None { bell: &group.bell },
         }
     }
 
@@ -54,6 +65,7 @@ impl<'a> Decay<'a> {
         match *self {
             Self::Product { factor, size } => factor.work(size.min_element()) * harmonics + 5000.0,
             Self::Radial { radial, .. } => 40.0 * radial.work() + 10.0 * harmonics,
+            Self::None { .. } => 0.0,
         }
     }
 
@@ -63,6 +75,7 @@ impl<'a> Decay<'a> {
         match *self {
             Self::Product { factor, size } => factor.work(size.min_element()) * (n + m),
             Self::Radial { radial, .. } => radial.work() * (n * m).min(f64::from(MANY)),
+            Self::None { .. } => 0.0,
         }
     }
 
@@ -78,6 +91,7 @@ impl<'a> Decay<'a> {
         match *self {
             Self::Product { factor, size } => kept_product(factor, size, error),
             Self::Radial { radial, size } => kept_radial(radial, size, error),
+            Self::None { bell } => Err(no_series(bell)),
         }
     }
 
@@ -96,6 +110,7 @@ impl<'a> Decay<'a> {
                 let nearest = rows.map(|(n, m)| (turn * DVec2::new(f64::from(n), f64::from(m))).length());
                 copies(size) * radial.beyond(nearest.fold(f64::INFINITY, f64::min), 0.5 * turn.length())
             }
+            Self::None { .. } => f64::INFINITY,
         }
     }
 
@@ -125,6 +140,7 @@ impl<'a> Decay<'a> {
                 }
                 held
             }
+            Self::None { .. } => degree.map(|degree| vec![f64::INFINITY; degree as usize + 1]),
         }
     }
 }
@@ -242,6 +258,18 @@ fn kept_radial(radial: &dyn Radial, size: DVec2, error: f64) -> Result<Vec<u32>>
         (axes.y * across.max(0.0).sqrt()).floor() as u32 + 1
     };
     Ok((0..=rows).map(row).collect())
+}
+
+/// Why a bell has no series at any degree.
+pub(super) fn no_series(bell: &Bell) -> Error {
+    let what = match bell {
+        Bell::Disc(_) => "a disc with blades".to_owned(),
+        bell => format!("a {bell}"),
+    };
+    Error::Plan(format!(
+        "{what} has no series here: the evaluators local and direct sum it, and the plan puts it beside the series of other \
+         ghosts by itself"
+    ))
 }
 
 fn too_high(degree: f64) -> Error {

@@ -7,7 +7,9 @@ use std::ops::Range;
 use glam::DVec2;
 use rayon::prelude::*;
 
+use super::candidate::Survey;
 use super::weigh::{Weighed, along};
+use super::{Cost, Evaluator, Request, cost};
 use crate::frame::Frame;
 use crate::problem::Problem;
 use crate::scene::Ghost;
@@ -41,6 +43,15 @@ impl Bounds {
     }
 }
 
+/// What an offset's own rounding and that of the radius shift a bell by, for each unit of the offset.
+pub(super) fn per_offset(bell: &Bell) -> f64 {
+    match bell {
+        Bell::Profile(_) => PER_OFFSET + PER_RADIUS,
+        Bell::Disc(_) => PER_OFFSET + PER_RHO,
+        _ => PER_OFFSET,
+    }
+}
+
 /// Half a unit in the last place of an f32.
 pub(super) const HALF_A_UNIT: f64 = 0.5 * f32::EPSILON as f64;
 
@@ -63,19 +74,22 @@ const PER_POSITION: f64 = 2.0 * HALF_A_UNIT;
 pub(super) const PER_OFFSET: f64 = 3.0 * HALF_A_UNIT;
 /// The square of it as a profile's table has it, both rounded: half of that in the radius.
 const PER_RADIUS: f64 = 1.5 * HALF_A_UNIT;
+/// A disc's radius, a sum of rounded products and its root, or for a polygon four such sums, one after the other: of each unit of
+/// it.
+const PER_RHO: f64 = 18.0 * HALF_A_UNIT;
 /// The sine that a sine-Gaussian's mean is taken from, absolutely.
 pub(super) const SINE: f64 = 3.0 * HALF_A_UNIT;
 
-/// Ghosts that are looked at in every cell of the finer division, and in those of the coarser one.
-const FEW: usize = 4096;
-/// Cells along each side of the window.
-const CELLS: [usize; 2] = [8, 4];
+/// Cells along each side of the window, for at most so many ghosts; and for more.
+const CELLS: [(usize, usize); 3] = [(64, 32), (512, 16), (4096, 8)];
+const FEWEST_CELLS: usize = 4;
 
 /// The bounds: the worst of some cells of the window, in each of which every ghost is as far away as the cell.
 pub(super) fn bounds(problem: &Problem, weighed: &Weighed) -> Bounds {
     let (ghosts, frame) = (problem.ghosts(), problem.frame());
     let kept = weighed.weights.iter().filter(|&&weight| weight > 0.0).count();
-    let cells = Cells::new(frame, CELLS[usize::from(kept > FEW)], kept);
+    let along = CELLS.into_iter().find(|(ghosts, _)| kept <= *ghosts).map_or(FEWEST_CELLS, |(_, along)| along);
+    let cells = Cells::new(frame, along, kept);
     let chunk = ghosts.len().div_ceil(64).max(256);
     let sums: Vec<[Vec<f64>; 2]> = (0..ghosts.len().div_ceil(chunk))
         .into_par_iter()
@@ -86,6 +100,13 @@ pub(super) fn bounds(problem: &Problem, weighed: &Weighed) -> Bounds {
     };
     let additions = PER_ADDITION_DOUBLE * kept as f64;
     Bounds { single: largest(0).max(PER_WEIGHT), double: additions + largest(1) }
+}
+
+/// What the sum costs at least, before it is planned.
+pub(super) fn estimate(problem: &Problem, survey: &Survey, request: &Request) -> Cost {
+    let nanoseconds = cost::direct(&survey.groups, Precision::Single, problem.frame(), &request.cost_model);
+    let milliseconds = 1e-6 * (nanoseconds + request.cost_model.pass);
+    Cost { evaluator: Evaluator::Direct, summed: survey.kept(), reaching: 0, milliseconds }
 }
 
 /// The window in as many parts along each side.
@@ -129,7 +150,7 @@ impl Cells {
 struct Steepness<'a> {
     ghost: &'a Ghost,
     shape: &'a dyn Shape,
-    /// Whether it depends on the radius alone.
+    /// Whether it is no product, and bounded by the radius alone.
     radial: bool,
     /// Whether it is an exponential of the offset, or of a sine, as a Gaussian is, in which a rounding of the exponent counts
     /// as often as the exponent is large.
@@ -169,7 +190,7 @@ impl<'a> Steepness<'a> {
         Self {
             ghost,
             shape,
-            radial: matches!(shape.modes(), Modes::Radial(_)),
+            radial: !matches!(shape.modes(), Modes::Product(_)),
             exponential: matches!(ghost.bell, Bell::Gaussian | Bell::VonMises(_) | Bell::SineGaussian(_)),
             moved: DVec2::new(moved(ghost.center.x), moved(ghost.center.y)) / ghost.size,
             held: ghost.size.max_element() < 1.0 / f64::from(f32::MIN_POSITIVE),
@@ -231,8 +252,17 @@ impl<'a> Steepness<'a> {
     fn scaled(&self, far: f64) -> f64 {
         match &self.ghost.bell {
             Bell::VonMises(_) | Bell::SineGaussian(_) => PER_OFFSET * far,
-            Bell::Profile(_) => (PER_OFFSET + PER_RADIUS) * far.min(self.shape.ends()),
-            _ => PER_OFFSET * far.min(self.shape.ends()),
+            bell => per_offset(bell) * far.min(self.shape.ends()),
+        }
+    }
+
+    /// What f64 shifts the bell by, where offsets go as far as `far`.
+    fn shifted_double(&self, far: f64) -> f64 {
+        // The reference takes whole periods off its own way, and a rim may be steep enough to show a root's last bit.
+        match &self.ghost.bell {
+            Bell::VonMises(_) | Bell::SineGaussian(_) => 4.0 * f64::EPSILON * far + self.beside_double,
+            Bell::Disc(_) => 4.0 * f64::EPSILON * far.min(self.shape.ends()),
+            _ => 0.0,
         }
     }
 
@@ -247,12 +277,7 @@ impl<'a> Steepness<'a> {
             apart: if apart { PER_POSITION * peak * peak * (-0.5 * peak * peak).exp() } else { 0.0 },
             near: distance,
             shift,
-            // The reference takes whole periods off its own way.
-            shift_double: if self.shape.period().is_some() {
-                4.0 * f64::EPSILON * far + self.beside_double
-            } else {
-                0.0
-            },
+            shift_double: self.shifted_double(far),
             value: along(shape, distance),
             steepest: if self.radial { 0.0 } else { shape.steepest(distance) },
             exponent: if self.exponential { 0.5 * near * near } else { 0.0 },
@@ -267,16 +292,18 @@ impl<'a> Steepness<'a> {
         }
         // A profile may fall from 1 to −1.
         let most = if self.radial { 2.0 } else { 1.0 } * met;
-        let slope = |x_shift: f64, y_shift: f64| x_shift * x.steepest * y.value + y_shift * y.steepest * x.value;
+        let slope = |x_shift: f64, y_shift: f64| {
+            if self.radial {
+                // The radius is not below what both offsets make.
+                return self.shape.steepest(x.near.hypot(y.near)) * x_shift.hypot(y_shift);
+            }
+            x_shift * x.steepest * y.value + y_shift * y.steepest * x.value
+        };
         let shifted = if !self.held {
             f64::INFINITY
-        } else if self.radial {
-            // The radius is not below what both offsets make.
-            let radius = x.near.hypot(y.near);
-            let jump = if radius <= self.shape.ends() { self.shape.jump() } else { 0.0 };
-            self.shape.steepest(radius) * x.shift.hypot(y.shift) + jump
         } else {
-            slope(x.shift, y.shift)
+            let falls = self.radial && x.near.hypot(y.near) <= self.shape.ends();
+            slope(x.shift, y.shift) + if falls { self.shape.jump() } else { 0.0 }
         };
         let with_exponent = met * (1.0 + x.exponent + y.exponent);
         [

@@ -28,6 +28,11 @@ impl Effort {
         self.most.set(self.most.get().min(1e6 * allowed(milliseconds)));
     }
 
+    /// As much as it takes, after all.
+    pub fn lift(&self) {
+        self.most.set(f64::INFINITY);
+    }
+
     /// Whether something that would take so many nanoseconds is worth a try.
     pub fn affords(&self, nanoseconds: f64) -> bool {
         nanoseconds <= self.most.get()

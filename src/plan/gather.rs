@@ -3,8 +3,10 @@
 use glam::DVec2;
 
 use super::decay::Decay;
-use super::{CostModel, Group, Prediction, share};
-use crate::series::moments::{Cells, order_within};
+use super::{CostModel, Group, Prediction, share, weigh};
+use crate::scene::Ghost;
+use crate::series::Bell;
+use crate::series::moments::{Cells, Point, Sizes, Sums, order_within, sizes_within};
 
 /// How the spectrum of a group comes about.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -12,11 +14,21 @@ use crate::series::moments::{Cells, order_within};
 pub enum Transform {
     /// Every ghost meets every mode, on the device.
     Dispatch,
-    /// Every ghost meets the moments of its cell, on the CPU, and the moments meet the modes: `series::moments`. For
-    /// ghosts of one size, which their bell's coefficients can multiply afterwards.
-    Gather(Cells),
+    /// Every ghost meets the moments of its cell, on the CPU, and the moments meet the modes: `series::moments`.
+    Gather(Gathering),
     /// Not at all: the ghosts are summed at every pixel, or where they reach.
     Direct,
+}
+
+/// How ghosts are gathered: those of one size, which their bell's coefficients multiply afterwards, or Gaussians of several, each
+/// as so many of a few sizes.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct Gathering {
+    /// The cells.
+    #[serde(flatten)]
+    pub cells: Cells,
+    /// How many sizes stand for all.
+    pub sizes: u32,
 }
 
 impl Transform {
@@ -24,8 +36,31 @@ impl Transform {
     pub fn moments(&self) -> f64 {
         match self {
             Self::Dispatch | Self::Direct => 0.0,
-            Self::Gather(cells) => EACH + f64::from(cells.orders[0]) * f64::from(cells.orders[1]),
+            Self::Gather(Gathering { cells, sizes }) => {
+                f64::from(*sizes) * (EACH + f64::from(cells.orders[0]) * f64::from(cells.orders[1]))
+            }
         }
+    }
+}
+
+impl Gathering {
+    /// For each of the sizes that stand for all of a group's, the sums over its ghosts of the phases of every mode up to the
+    /// group's degree, with their weights in units of the scale.
+    pub fn sums(&self, ghosts: &[Ghost], group: &Group, period: DVec2, scale: [f64; 3]) -> Vec<(DVec2, Vec<Sums>)> {
+        let sizes = Sizes::new(group.smallest, group.largest, self.sizes);
+        let of = |k: usize| &ghosts[group.members[k] as usize];
+        let count = group.members.len();
+        let shares: Vec<f64> = (0..count).flat_map(|k| sizes.weights(of(k).size)).collect();
+        let one = |(size, each): (DVec2, usize)| {
+            let point = |k: usize| {
+                let turns = of(k).center / period;
+                let share = shares[k * self.sizes as usize + each];
+                let weight = weigh::weight(of(k), scale).map(|weight| share * weight);
+                Point { turns: (turns - turns.floor()).to_array(), weight }
+            };
+            (size, self.cells.sums(count, point, group.degree))
+        };
+        sizes.sizes().zip(0..).map(one).collect()
     }
 }
 
@@ -56,41 +91,83 @@ pub(super) fn choose(
     let budget = if left > 0.0 { most.min(left) } else { most };
     let part = budget / groups.len().max(1) as f64;
     let mut added = 0.0;
-    for group in groups {
-        if let Some((cells, error)) = cheaper(group, period, part, model) {
-            group.transform = Transform::Gather(cells);
+    for group in groups.iter_mut().filter(|group| group.transform == Transform::Dispatch) {
+        let dispatch = cost(group, &Transform::Dispatch, model);
+        if dispatch >= FEW * model.pass
+            && let Some((gathering, error)) = cheaper(group, period, part, model, dispatch)
+        {
+            group.transform = Transform::Gather(gathering);
             added += error;
         }
     }
     added
 }
 
-/// The cells that are cheapest for a group, and the error that they leave; none where a dispatch is cheaper.
-fn cheaper(group: &Group, period: DVec2, budget: f64, model: &CostModel) -> Option<(Cells, f64)> {
-    if group.ghosts < FEWEST {
-        return None;
+/// Chooses for the groups of a series whose modes are computed on the CPU, within a budget, where a ghost takes so many
+/// nanoseconds for a mode; and gives the error that this adds.
+pub(super) fn choose_in_doubles(groups: &mut [Group], period: DVec2, budget: f64, each: f64) -> f64 {
+    let part = budget / groups.len().max(1) as f64;
+    let model = CostModel { pass: 0.0, ..CostModel::default() };
+    let mut added = 0.0;
+    for group in groups.iter_mut().filter(|group| group.bell == Bell::Gaussian) {
+        let modes = group.degree.map(|degree| f64::from(degree + 1));
+        // Half of the rectangle is kept.
+        let otherwise = 0.5 * each * group.ghosts as f64 * modes[0] * modes[1];
+        if otherwise >= FEW * CostModel::default().pass
+            && let Some((gathering, error)) = cheaper(group, period, part, &model, otherwise)
+        {
+            group.transform = Transform::Gather(gathering);
+            added += error;
+        }
     }
+    added
+}
+
+/// What the spectrum of a group is likely to cost at least, in nanoseconds, before anyone knows how it comes about.
+pub(super) fn likely(group: &Group, model: &CostModel) -> f64 {
+    // Sizes, moments along an axis, and cells along one for each harmonic.
+    const SIZES: f64 = 10.0;
+    const MOMENTS: f64 = 8.0;
     let dispatch = cost(group, &Transform::Dispatch, model);
-    if group.smallest != group.largest || dispatch < FEW * model.pass {
+    let sizes = if group.smallest == group.largest { 1.0 } else { SIZES };
+    let alike = sizes == 1.0 || group.bell == Bell::Gaussian && group.proportional;
+    if group.ghosts < FEWEST || !alike || dispatch < FEW * model.pass {
+        return dispatch;
+    }
+    let [n, m] = group.degree.map(|degree| f64::from(degree + 1));
+    let spread = (group.ghosts as f64).min(n * m) * n * (MOMENTS + 4.0) * MOMENTS + 4.0 * m * n * m * MOMENTS;
+    let gathered = group.ghosts as f64 * (EACH + MOMENTS * MOMENTS) + spread;
+    dispatch.min(sizes * (model.moment * gathered + model.pass))
+}
+
+/// The way that is cheapest for a group, and the error that it leaves; none where it is not cheaper than so many nanoseconds.
+fn cheaper(group: &Group, period: DVec2, budget: f64, model: &CostModel, otherwise: f64) -> Option<(Gathering, f64)> {
+    let alike = group.smallest == group.largest || group.bell == Bell::Gaussian && group.proportional;
+    if group.ghosts < FEWEST || !alike {
         return None;
     }
+    // A part for the sizes, where there are several.
+    let (sizes, off) = sizes_within(group.smallest, group.largest, 0.3 * budget / group.weight)?;
+    let left = budget - off * group.weight;
     // Every mode is off by its coefficient times what its waves are, so the field by the sum of them.
     let [held, _] = Decay::new(group, period).marginals(group.degree);
-    let gain = Some(group.weight * held.iter().sum::<f64>()).filter(|gain| gain.is_finite())?;
+    let gain = Sizes::gain(sizes) * group.weight * held.iter().sum::<f64>();
+    let gain = Some(gain).filter(|gain| gain.is_finite())?;
     // Half of it for each axis, and a little for their product.
-    let each = 0.49 * (budget / gain).min(0.05);
+    let each = 0.49 * (left / gain).min(0.05);
     let axis = |degree: u32| candidates(degree).map(move |count| (count, order_within(degree, count, each)));
-    let (mut best, mut least) = (None, dispatch);
+    let (mut best, mut least) = (None, otherwise);
     for (count_x, order_x) in axis(group.degree[0]) {
         for (count_y, order_y) in axis(group.degree[1]).filter(|(count_y, _)| count_x * count_y <= MOST_CELLS) {
             let cells = Cells { counts: [count_x, count_y], orders: [order_x, order_y] };
-            let cost = cost(group, &Transform::Gather(cells), model);
+            let gathering = Gathering { cells, sizes };
+            let cost = cost(group, &Transform::Gather(gathering), model);
             if cost < least {
-                (best, least) = (Some(cells), cost);
+                (best, least) = (Some(gathering), cost);
             }
         }
     }
-    best.map(|cells| (cells, gain * cells.error(group.degree)))
+    best.map(|gathering| (gathering, off * group.weight + gain * gathering.cells.error(group.degree)))
 }
 
 /// Numbers of cells along an axis that are worth a try: from a few harmonics a cell to a few cells a harmonic.
@@ -106,11 +183,12 @@ pub(super) fn cost(group: &Group, transform: &Transform, model: &CostModel) -> f
     match transform {
         Transform::Direct => 0.0,
         Transform::Dispatch => ghosts * modes[0] * modes[1] * model.spectrum,
-        Transform::Gather(cells) => {
+        Transform::Gather(Gathering { cells, sizes }) => {
             let ([x, y], [p, q]) = (cells.counts.map(f64::from), cells.orders.map(f64::from));
+            let sizes = f64::from(*sizes);
             // Then along x for each cell that has a ghost, and along y for each row of them: four sums of products.
             let spread = ghosts.min(x * y) * modes[0] * (p + 4.0) * q + 4.0 * ghosts.min(y) * modes[0] * modes[1] * q;
-            model.moment * (ghosts * transform.moments() + spread) + model.pass
+            model.moment * (ghosts * transform.moments() + sizes * spread) + sizes * model.pass
         }
     }
 }

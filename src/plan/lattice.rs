@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use super::amplitudes::{Rgb, largest};
 use super::decay::Decay;
-use super::{Group, Precision};
+use super::{Group, Precision, Request};
 use crate::frame::Frame;
 use crate::series::{CUBIC, spline_error_of};
 use crate::{Error, Result};
@@ -14,9 +14,6 @@ use crate::{Error, Result};
 /// Nodes a half wave of the highest harmonic that are tried: from barely enough to plenty.
 const SPARSEST: f64 = 1.02;
 const DENSEST: f64 = 64.0;
-
-/// Most nodes along an axis: places on the lattice are kept in 32 bits, 12 of them for whole nodes.
-pub const MOST_NODES: u32 = 4000;
 
 /// Nodes that a pixel's B-spline has along each axis where 64-bit floats ask for more digits: with as high a power of the step
 /// the error falls.
@@ -92,20 +89,21 @@ impl Marginals {
     }
 }
 
-/// The coarsest lattice whose interpolation stays within the budget, or the one of a given oversampling.
+/// The coarsest lattice whose interpolation stays within the budget, or the one of the oversampling that is asked for.
 ///
 /// # Errors
-/// [`Error::Plan`] where it would have more than [`MOST_NODES`] along an axis, or where the oversampling is too little
-/// for a spline.
+/// [`Error::Plan`] where it would have more nodes along an axis than the request allows, or where the oversampling is too little for a
+/// spline.
 pub(super) fn coarsest(
     precision: Precision,
     degree: [u32; 2],
     period: DVec2,
     marginals: &Marginals,
     frame: Frame,
-    oversampling: Option<f64>,
     budget: f64,
+    request: &Request,
 ) -> Result<Lattice> {
+    let Request { oversampling, most_nodes: most, .. } = *request;
     if let Some(nodes) = oversampling.filter(|nodes| !(SPARSEST..=f64::MAX).contains(nodes)) {
         return Err(Error::Plan(format!("{nodes} nodes a half wave are fewer than {SPARSEST}")));
     }
@@ -120,13 +118,13 @@ pub(super) fn coarsest(
     };
     let (step_x, over_x) = along(0, period.x, extent.x);
     let (step_y, over_y) = along(1, period.y, extent.y);
-    let nodes = |extent: f64, step: f64| (extent / step).floor() as u32 + order;
+    let nodes = |extent: f64, step: f64| (extent / step).floor().min(f64::from(u32::MAX - order)) as u32 + order;
     let step = DVec2::new(step_x, step_y);
     let nodes = [nodes(extent.x, step_x), nodes(extent.y, step_y)];
-    if nodes.iter().any(|&nodes| nodes > MOST_NODES) {
+    if nodes.iter().any(|&nodes| nodes > most) {
         let [x, y] = nodes;
         return Err(Error::Plan(format!(
-            "a lattice of {x} x {y} nodes is beyond {MOST_NODES} a side, which is what grid can index; series and rows \
+            "a lattice of {x} x {y} nodes is beyond the {most} a side that a texture of this device has; series and rows \
              need none"
         )));
     }

@@ -41,14 +41,15 @@ pub use crate::choices::Evaluator;
 pub use cost::{Cost, CostModel, GRID_PASSES};
 pub use decided::Plan;
 pub use direct::Precision;
-pub use gather::Transform;
+pub use gather::{Gathering, Transform};
 pub(crate) use lattice::DOUBLE_ORDER;
-pub use lattice::{Lattice, MOST_NODES};
+pub use lattice::Lattice;
 pub use layer::{Layer, Series};
 pub use local::Local;
 pub(crate) use local::{Area, LARGEST_POINT, block_shift};
 pub use modes::{Mode, Modes};
 pub use prediction::{Prediction, Source};
+pub(crate) use request::GHOSTS_A_ROUND;
 pub use request::Request;
 pub use search::{LOOSEST, plan_at_least, plan_within};
 pub use terms::Group;
@@ -72,6 +73,9 @@ pub struct Refusal {
     /// Why, in words.
     pub reason: String,
 }
+
+/// Ghosts from which on planning to sum them at every pixel takes longer than planning all else.
+const MANY: usize = 4096;
 
 /// Parts of the tolerance that the sources may use up, after what rounding takes.
 mod share {
@@ -122,22 +126,40 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
         None => !series || evaluator.is_series(),
     };
     let mut found = Found::default();
-    // The direct sum costs next to nothing to plan, and what it would take bounds what planning the others may.
-    if wanted(&Evaluator::Direct) {
+    // The direct sum of a few ghosts costs next to nothing to plan, and what it would take bounds what planning the others may.
+    // That of many, which is hardly ever the cheapest, is an estimate until all others are known.
+    let mut direct = wanted(&Evaluator::Direct).then(|| direct::estimate(problem, &survey, request));
+    if direct.take_if(|_| request.evaluator.is_some() || survey.kept() <= MANY).is_some() {
         found.take(Evaluator::Direct, candidate(problem, &survey, None, request, Evaluator::Direct));
+        found.bound(&survey);
+    } else if let Some(cost) = direct.as_ref().filter(|cost| candidate::rounds(cost.summed) <= request.loop_rounds) {
+        survey.effort.beside(cost.milliseconds);
     }
-    found.bound(&survey);
     // What reaches few pixels is as soon planned; where it is not, the others come first.
     let mut local = wanted(&Evaluator::Local).then(|| local::Estimate::new(problem, &survey, request));
     let early = |estimate: &mut local::Estimate| estimate.likely && survey.effort.affords(estimate.work);
     if let Some(estimate) = local.take_if(early) {
         found.local(problem, &survey, request, estimate);
     }
-    let series = found.series(problem, &survey, request, wanted, given);
+    // To know the modes of many ghosts takes longer than to cut them: where there are layers, only theirs are looked at.
+    let series = found.worth_a_try(problem, request, wanted);
+    let cut = survey.kept() > MANY && found.layers(problem, &survey, request, &series);
+    found.series(problem, &survey, request, &series, (given, !cut));
     if let Some(estimate) = local {
         found.local(problem, &survey, request, estimate);
     }
-    found.layers(problem, &survey, request, &series);
+    if !cut {
+        found.layers(problem, &survey, request, &series);
+    }
+    if let Some(cost) = direct {
+        found.direct(problem, &survey, request, cost);
+        if found.plans.is_empty() {
+            // What the others were held to cannot be had.
+            survey.effort.lift();
+            found.refusals.retain(|(evaluator, _)| !series.contains(evaluator));
+            found.series(problem, &survey, request, &series, (given, true));
+        }
+    }
     Ok(found.cheapest())
 }
 
@@ -168,6 +190,15 @@ impl Found {
         self.plans.iter().filter_map(Plan::cost).all(|milliseconds| least < milliseconds)
     }
 
+    /// Plans the sum at every pixel, unless it cannot be the cheapest.
+    fn direct(&mut self, problem: &Arc<Problem>, survey: &Survey, request: &Request, estimate: Cost) {
+        if self.may_lose_to(estimate.milliseconds) {
+            self.take(Evaluator::Direct, candidate(problem, survey, None, request, Evaluator::Direct));
+        } else {
+            self.others.push(estimate);
+        }
+    }
+
     /// Plans a local sum, unless it cannot be the cheapest.
     fn local(&mut self, problem: &Arc<Problem>, survey: &Survey, request: &Request, estimate: local::Estimate) {
         if request.evaluator.is_none() && !self.may_lose_to(estimate.cost.milliseconds) {
@@ -179,17 +210,14 @@ impl Found {
         self.bound(survey);
     }
 
-    /// Plans the series that are wanted, but for those that cannot be the cheapest; and says which it tried.
-    fn series(
+    /// The series that are wanted, but for those that cannot be the cheapest: the cheapest of them, more often than not, first.
+    fn worth_a_try(
         &mut self,
-        problem: &Arc<Problem>,
-        survey: &Survey,
+        problem: &Problem,
         request: &Request,
         wanted: impl Fn(&Evaluator) -> bool,
-        given: bool,
     ) -> Vec<Evaluator> {
         let least = |evaluator| cost::least(evaluator, problem.frame(), &request.cost_model);
-        // The cheapest of them, more often than not, first.
         let (tried, dear): (Vec<Evaluator>, Vec<Evaluator>) = [Evaluator::Grid, Evaluator::Rows, Evaluator::Series]
             .into_iter()
             .filter(wanted)
@@ -197,8 +225,20 @@ impl Found {
         for evaluator in dear {
             self.take(evaluator, Err(Error::Plan(format!("the passes of {evaluator} alone would take longer"))));
         }
-        let wide = if tried.is_empty() { None } else { Wide::new(problem, survey, request) };
-        for &evaluator in &tried {
+        tried
+    }
+
+    /// Plans these series, which are predicted as they come where they are `given`; by a look at the modes, or by weights.
+    fn series(
+        &mut self,
+        problem: &Arc<Problem>,
+        survey: &Survey,
+        request: &Request,
+        series: &[Evaluator],
+        (given, look): (bool, bool),
+    ) {
+        let wide = if series.is_empty() || !look { None } else { Wide::new(problem, survey, request) };
+        for &evaluator in series {
             let plan = candidate(problem, survey, wide.as_ref(), request, evaluator).and_then(|plan| {
                 // In the period that periodic bells bring with them the copies of others may land on the picture.
                 let total = plan.predicted.total();
@@ -210,17 +250,16 @@ impl Found {
             self.take(evaluator, plan);
             self.bound(survey);
         }
-        tried
     }
 
-    /// Plans several layers, where that is likely to be cheaper. What cannot be had was never asked for by that name.
-    fn layers(&mut self, problem: &Arc<Problem>, survey: &Survey, request: &Request, series: &[Evaluator]) {
-        let before = self.plans.len();
-        self.layers_in(Precision::Single, problem, survey, request, series);
+    /// Plans several layers, where that is likely to be cheaper; and says whether there are such. What cannot be had was never
+    /// asked for by that name.
+    fn layers(&mut self, problem: &Arc<Problem>, survey: &Survey, request: &Request, series: &[Evaluator]) -> bool {
         // Where 32-bit floats are of no use, 64 may be.
-        if self.plans.len() == before && request.doubles && request.tolerance < BEYOND_SINGLE {
-            self.layers_in(Precision::Double, problem, survey, request, series);
-        }
+        self.layers_in(Precision::Single, problem, survey, request, series)
+            || request.doubles
+                && request.tolerance < BEYOND_SINGLE
+                && self.layers_in(Precision::Double, problem, survey, request, series)
     }
 
     fn layers_in(
@@ -230,19 +269,21 @@ impl Found {
         survey: &Survey,
         request: &Request,
         series: &[Evaluator],
-    ) {
-        match split::apart(problem, survey, request, floats) {
+    ) -> bool {
+        let plans: Vec<Plan> = match split::apart(problem, survey, request, floats) {
             Some(Apart::Series(survey)) => {
                 self.bound(&survey);
                 let wide = Wide::new(problem, &survey, request);
-                let plans =
-                    series.iter().map(|&evaluator| candidate(problem, &survey, wide.as_ref(), request, evaluator));
-                let kept = plans.filter_map(Result::ok).filter(|plan| plan.predicted.total() <= request.tolerance);
-                self.plans.extend(kept);
+                let plan = |&evaluator: &Evaluator| candidate(problem, &survey, wide.as_ref(), request, evaluator);
+                series.iter().map(plan).filter_map(Result::ok).collect()
             }
-            Some(Apart::Sums(plan)) if plan.predicted.total() <= request.tolerance => self.plans.push(*plan),
-            Some(Apart::Sums(_)) | None => {}
-        }
+            Some(Apart::Sums(plan)) => vec![*plan],
+            None => Vec::new(),
+        };
+        let known = self.plans.len();
+        self.plans.extend(plans.into_iter().filter(|plan| plan.predicted.total() <= request.tolerance));
+        self.bound(survey);
+        self.plans.len() > known
     }
 
     fn cheapest(self) -> std::result::Result<Plan, Vec<Error>> {

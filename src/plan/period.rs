@@ -81,11 +81,9 @@ fn joined<'a>(all: impl Iterator<Item = (&'a Bell, Reach)>) -> Vec<Reach> {
 pub(super) fn shortest(reaches: &[Reach], budget: f64) -> DVec2 {
     // Copies along x are seen through the bell's y factor, which is at most its value at the nearest pixel.
     let along = |axis: fn(DVec2) -> f64, across: fn(DVec2) -> f64| {
-        let error = |period: f64| -> f64 {
-            let wrap = |reach: &Reach| {
-                reach.bell.shape().wrap(period, axis(reach.farthest), axis(reach.size)) * across(reach.nearest)
-            };
-            reaches.iter().map(|reach| reach.weight * wrap(reach)).sum()
+        let wrap = |reach: &Reach, period: f64| {
+            let wrap = reach.bell.shape().wrap(period, axis(reach.farthest), axis(reach.size));
+            reach.weight * wrap * across(reach.nearest)
         };
         // The bound holds for periods longer than every distance.
         let farthest = reaches.iter().map(|reach| axis(reach.farthest)).fold(0.0, f64::max);
@@ -94,18 +92,37 @@ pub(super) fn shortest(reaches: &[Reach], budget: f64) -> DVec2 {
         let round = reaches.iter().filter(|reach| matches!(reach.bell.shape().modes(), Modes::Radial(_)));
         let apart = round.map(|reach| 2.0 * (1.0 + 1e-9) * axis(reach.size)).fold(0.0, f64::max);
         let farthest = farthest.max(apart);
-        let mut low = if farthest > 0.0 || widest > 0.0 { farthest } else { 1.0 };
-        let mut high = low + widest.max(1e-6 * low);
-        while error(high) > 0.45 * budget {
-            high = low + 2.0 * (high - low);
-        }
-        for _ in 0..40 {
-            let middle = 0.5 * (low + high);
-            if error(middle) > 0.45 * budget { low = middle } else { high = middle }
-        }
-        high
+        let low = if farthest > 0.0 || widest > 0.0 { farthest } else { 1.0 };
+        bisect(reaches, wrap, 0.45 * budget, [low, low + widest.max(1e-6 * low)])
     };
     DVec2::new(along(|v| v.x, |v| v.y), along(|v| v.y, |v| v.x))
+}
+
+/// The least period, from `low` on, whose error is within the budget; `high` is a first guess.
+fn bisect(reaches: &[Reach], wrap: impl Fn(&Reach, f64) -> f64, budget: f64, [mut low, mut high]: [f64; 2]) -> f64 {
+    // Of most ghosts nothing that counts is left at a period that is too short for others, nor at any longer one.
+    const NOTHING: f64 = 1e-12;
+    let nothing = NOTHING * budget / reaches.len().max(1) as f64;
+    let (mut counting, mut rest): (Vec<(&Reach, f64)>, f64) = (reaches.iter().map(|reach| (reach, 0.0)).collect(), 0.0);
+    let mut fits = |period: f64| {
+        counting.iter_mut().for_each(|(reach, error)| *error = wrap(reach, period));
+        let too_much = rest + counting.iter().map(|(_, error)| error).sum::<f64>() > budget;
+        if too_much {
+            let (nothings, others) = std::mem::take(&mut counting).into_iter().partition(|&(_, error)| error < nothing);
+            let nothings: Vec<(&Reach, f64)> = nothings;
+            rest += nothings.iter().map(|(_, error)| error).sum::<f64>();
+            counting = others;
+        }
+        !too_much
+    };
+    while !fits(high) {
+        high = low + 2.0 * (high - low);
+    }
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if fits(middle) { high = middle } else { low = middle }
+    }
+    high
 }
 
 /// A bound of what all wrapped copies add at any pixel.

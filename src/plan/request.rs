@@ -4,6 +4,9 @@ use glam::DVec2;
 
 use super::{CostModel, Evaluator};
 
+/// Ghosts that a loop over many takes in one round.
+pub(crate) const GHOSTS_A_ROUND: usize = 8;
+
 /// What is asked of the plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Request {
@@ -19,6 +22,8 @@ pub struct Request {
     pub oversampling: Option<f64>,
     /// The most terms that the device can hold.
     pub most_terms: usize,
+    /// The most nodes that `grid`'s lattice may have along an axis: as many as a texture of the device has texels.
+    pub most_nodes: u32,
     /// Rounds that the renderer runs a shader's loops for one pixel.
     pub loop_rounds: usize,
     /// Whether the device has 64-bit floats.
@@ -37,6 +42,8 @@ impl Request {
             evaluator: None,
             oversampling: None,
             most_terms: 2 << 20,
+            // OpenGL 4.3 has no less.
+            most_nodes: 16384,
             loop_rounds: usize::MAX,
             doubles: true,
             cost_model: CostModel::default(),

@@ -62,7 +62,7 @@ pub(super) fn of_doubles(groups: &[Group], degree: [u32; 2]) -> f64 {
     const LOOKED_UP: f64 = 1e-11;
     let turned = f64::EPSILON * (8.0 + 2.0 * f64::from(degree[0] + degree[1]));
     let one = |group: &Group| match group.bell {
-        Bell::Profile(_) => group.weight * (turned + READ),
+        Bell::Profile(_) | Bell::Disc(_) => group.weight * (turned + READ),
         Bell::Paraboloid => group.weight * (turned + LOOKED_UP),
         _ => group.weight * turned,
     };

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::amplitudes::{self, Amplitudes};
 use super::candidate::{NEEDED, Survey};
-use super::decay::Decay;
+use super::decay::{self, Decay};
 use super::lattice::{self, Marginals};
 use super::rounding::Strength;
 use super::{
@@ -13,6 +13,7 @@ use super::{
 };
 use crate::frame::Frame;
 use crate::problem::Problem;
+use crate::series::Modes as Bells;
 use crate::{Error, Result};
 
 /// What of the tolerance may lie beyond the modes of [`Wide`].
@@ -26,6 +27,8 @@ pub(super) struct Wide {
     amplitudes: Amplitudes,
     /// A bound of what lies beyond the modes.
     beyond: f64,
+    /// What gathering ghosts left out.
+    gathering: f64,
 }
 
 impl Wide {
@@ -41,6 +44,8 @@ impl Wide {
         let period = request.period.unwrap_or_else(|| period::shortest(&survey.reaches, usable * share::PERIODISATION));
         let mut groups = survey.groups.clone();
         let counts = terms::fewest(&mut groups, period, usable * BEYOND, &survey.effort).ok()?;
+        let gathering =
+            gather::choose_in_doubles(&mut groups, period, share::GATHERING * request.tolerance, amplitudes::MODE);
         // By weights there may be no series at all.
         let needed = rounding > (1.0 - NEEDED) * request.tolerance;
         let afforded = survey.effort.affords(amplitudes::work(&groups, &counts));
@@ -49,7 +54,14 @@ impl Wide {
         }
         let amplitudes = Amplitudes::new(problem.ghosts(), &groups, &counts, period, survey.weighed.scale);
         let beyond = terms::error(&groups, period, &counts);
-        Some(Self { period, periodisation: period::error(&survey.reaches, period), groups, amplitudes, beyond })
+        Some(Self {
+            period,
+            periodisation: period::error(&survey.reaches, period),
+            groups,
+            amplitudes,
+            beyond,
+            gathering,
+        })
     }
 
     /// What f32 costs with all of the modes.
@@ -76,7 +88,8 @@ impl Wide {
         }
         let marginals = Marginals::of(self.amplitudes.marginals(&counts));
         let (modes, strength) = (Some(self.amplitudes.modes().clone()), Some(self.amplitudes.strength(&counts)));
-        Terms { groups, modes, strength, marginals: Some(marginals), truncation: self.beyond + left, counts }
+        let (marginals, gathering) = (Some(marginals), self.gathering);
+        Terms { groups, modes, strength, marginals, truncation: self.beyond + left, counts, gathering }
     }
 }
 
@@ -91,6 +104,8 @@ struct Terms {
     marginals: Option<Marginals>,
     /// What is left out.
     truncation: f64,
+    /// What gathering left out, where the modes were computed.
+    gathering: f64,
 }
 
 /// What a series is planned from.
@@ -122,6 +137,10 @@ pub(super) fn plan_series(
     predicted: Prediction,
     usable: f64,
 ) -> Result<(Series, Prediction)> {
+    // A degree that is given needs no looking at what a bell's coefficients are.
+    if let Some(group) = survey.groups.iter().find(|group| matches!(group.bell.shape().modes(), Bells::None)) {
+        return Err(decay::no_series(&group.bell));
+    }
     survey.prepare()?;
     let wide = wide.filter(|wide| wide.fits(request, usable));
     let period = match (request.period, wide) {
@@ -178,8 +197,8 @@ impl Brief<'_> {
         let marginals = marginals.unwrap_or_else(|| Marginals::by_weights(&terms.groups, degree, self.period));
         // Where the series is given there may be nothing left: then a lattice is to cost a little of what rounding does.
         let budget = interpolation * self.usable.max(if self.given() { 0.1 * self.predicted.single() } else { 0.0 });
-        let over = self.request.oversampling;
-        let lattice = lattice::coarsest(self.precision, degree, self.period, &marginals, self.frame, over, budget)?;
+        let lattice =
+            lattice::coarsest(self.precision, degree, self.period, &marginals, self.frame, budget, self.request)?;
         self.finish(terms, Some(lattice))
     }
 
@@ -194,7 +213,15 @@ impl Brief<'_> {
                     Some(degree) => terms::rectangle(&mut groups, degree),
                     None => terms::fewest(&mut groups, self.period, truncation, &self.survey.effort)?,
                 };
-                Terms { groups, counts, modes: None, strength: None, marginals: None, truncation: f64::NAN }
+                Terms {
+                    groups,
+                    counts,
+                    modes: None,
+                    strength: None,
+                    marginals: None,
+                    truncation: f64::NAN,
+                    gathering: 0.0,
+                }
             }
         };
         let count: usize = terms.counts.iter().map(|&count| count as usize).sum();
@@ -212,9 +239,9 @@ impl Brief<'_> {
 
     /// The series, with all that it adds to the error.
     fn finish(&self, terms: Terms, lattice: Option<Lattice>) -> Result<(Series, Prediction)> {
-        let Terms { mut groups, counts, modes, strength, marginals: _, truncation } = terms;
+        let Terms { mut groups, counts, modes, strength, marginals: _, truncation, gathering } = terms;
         let interpolation = lattice.map_or(0.0, |lattice| lattice.error);
-        let mut predicted = Prediction { truncation, interpolation, ..self.predicted };
+        let mut predicted = Prediction { truncation, interpolation, gathering, ..self.predicted };
         if self.precision == Precision::Single
             && let Some(strength) = strength
         {
@@ -224,9 +251,9 @@ impl Brief<'_> {
             predicted = predicted.with_single((known + self.survey.beside.rounding).min(predicted.single()));
         }
         let Request { tolerance, ref cost_model, .. } = *self.request;
-        // In 64-bit floats every ghost meets every mode.
+        // In 64-bit floats every ghost meets every mode, but for what was gathered when the modes were looked at.
         if self.precision == Precision::Single {
-            predicted.gathering = gather::choose(&mut groups, self.period, tolerance, &predicted, cost_model);
+            predicted.gathering += gather::choose(&mut groups, self.period, tolerance, &predicted, cost_model);
         }
         let (evaluator, precision, period) = (self.evaluator, self.precision, self.period);
         Ok((Series { evaluator, precision, period, counts: counts.into(), groups, modes, lattice }, predicted))

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::candidate::{Beside, Survey, made};
+use super::candidate::{Beside, Survey, made, rounds};
 use super::decay::Decay;
 use super::direct::{HALF_A_UNIT, STORED};
 use super::weigh::Weighed;
@@ -75,8 +75,7 @@ pub(super) fn apart(problem: &Arc<Problem>, survey: &Survey, request: &Request, 
     let mut beside = Beside { precision, exact, ..Beside::default() };
     // What is stored is that of the sum, once.
     let stored = if exact { STORED } else { 0.0 };
-    // Eight a round where there are many, and a few rounds more to gather them.
-    if everywhere.iter().map(|group| group.ghosts).sum::<usize>() / 7 > request.loop_rounds {
+    if rounds(everywhere.iter().map(|group| group.ghosts).sum()) > request.loop_rounds {
         return None;
     }
     if !everywhere.is_empty() {
@@ -239,7 +238,7 @@ impl<'a> Cutting<'a> {
             union.iter_mut().zip(needed).for_each(|(count, &needed)| *count = needed.max(*count));
             let degree = [needed.len() as u32 - 1, needed[0] - 1];
             let group = Group { degree, members: Arc::default(), ..self.groups[index].clone() };
-            spectrum += gather::cost(&group, &Transform::Dispatch, self.model);
+            spectrum += gather::likely(&group, self.model);
             costs[cut] = spectrum + cheapest_field(&union, self.period, self.frame, self.floats, self.model);
         }
         costs

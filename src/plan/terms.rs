@@ -28,6 +28,9 @@ pub struct Group {
     pub smallest: DVec2,
     /// The largest.
     pub largest: DVec2,
+    /// Whether all of them have the ratio of axes that the smallest has.
+    #[serde(skip)]
+    pub proportional: bool,
     /// The sum of their peaks, in units of the field's scale.
     pub weight: f64,
     /// Highest harmonic in x and y that they add to.
@@ -74,6 +77,7 @@ impl Group {
             ghosts: 0,
             smallest: size,
             largest: size,
+            proportional: true,
             weight: 0.0,
             degree: [0; 2],
             transform: Transform::Dispatch,
@@ -82,6 +86,7 @@ impl Group {
 
     fn add(&mut self, size: DVec2, weight: f64) {
         self.ghosts += 1;
+        self.proportional &= alike(size, self.smallest);
         self.smallest = self.smallest.min(size);
         self.largest = self.largest.max(size);
         self.weight += weight;
@@ -89,10 +94,16 @@ impl Group {
 
     fn join(&mut self, other: &Self) {
         self.ghosts += other.ghosts;
+        self.proportional &= other.proportional && alike(other.smallest, self.smallest);
         self.smallest = self.smallest.min(other.smallest);
         self.largest = self.largest.max(other.largest);
         self.weight += other.weight;
     }
+}
+
+/// Whether the axes of two sizes have one ratio, but for what comes of computing it.
+fn alike(a: DVec2, b: DVec2) -> bool {
+    (a.x * b.y - a.y * b.x).abs() <= 1e-14 * a.x * b.y
 }
 
 /// What the ghosts of a group have in common.

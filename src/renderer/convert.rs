@@ -6,11 +6,16 @@ use super::settings::Settings;
 use crate::choices::Normalize;
 use crate::gpu::composite::{Composite, Variant};
 use crate::gpu::field::Source;
-use crate::gpu::layout::{DirectGhost, DoubleGhost, SpectralGhost};
-use crate::plan::{self, Evaluator, Group, Layer, Local, Mode, Modes, Plan, Precision, Series, Transform};
+use crate::gpu::layout::{
+    Binding, DirectGhost, DoubleGhost, NORMALIZE_CLAMP, NORMALIZE_MINMAX, NORMALIZE_NONE, PROFILE_HALVINGS,
+    SpectralGhost,
+};
+use crate::plan::{self, Evaluator, Group, Layer, Local, Mode, Modes, Plan, Precision, Series};
 use crate::scene::Ghost;
-use crate::series::moments::{Cells, Point, Sums};
-use crate::series::{Bell, phase};
+use crate::series::{Bell, Profile, phase};
+
+// A profile that is not given at its centre has a row more.
+const _: () = assert!(Profile::MOST_ROWS < 1 << PROFILE_HALVINGS);
 
 /// A sum of layers, one of them local, and one that is missing; and the local one, in 32-bit floats and in 64.
 const LAYERS: &str = "\"evaluators/layers.glsl\"";
@@ -81,12 +86,12 @@ pub(super) fn variant(source: Source, settings: &Settings) -> Variant {
     Variant { source, normalize: normalize(settings), take_light, straight }
 }
 
-/// How values become glare, by its number in `shared/normalized.glsl`.
-pub(super) fn normalize(settings: &Settings) -> &'static str {
+/// How values become glare.
+pub(super) fn normalize(settings: &Settings) -> Binding {
     match settings.normalize {
-        Normalize::None => "0",
-        Normalize::Clamp => "1",
-        Normalize::Minmax => "2",
+        Normalize::None => NORMALIZE_NONE,
+        Normalize::Clamp => NORMALIZE_CLAMP,
+        Normalize::Minmax => NORMALIZE_MINMAX,
     }
 }
 
@@ -103,16 +108,6 @@ pub(super) fn spectral_ghosts(plan: &Plan, period: DVec2, members: &[u32]) -> Ve
         }
     };
     members.iter().map(convert).collect()
-}
-
-/// The sums over the ghosts of a group, gathered from the moments of cells.
-pub(super) fn gathered(plan: &Plan, period: DVec2, group: &Group, cells: &Cells) -> Vec<Sums> {
-    let point = |k: usize| {
-        let ghost = &plan.problem().ghosts()[group.members[k] as usize];
-        let turns = ghost.center / period;
-        Point { turns: (turns - turns.floor()).to_array(), weight: weight(ghost, plan) }
-    };
-    cells.sums(group.members.len(), point, group.degree)
 }
 
 /// The ghosts that the plan sums directly, as the shader takes them, a list for each kind of bell; and the parameters of their
@@ -162,13 +157,10 @@ pub(super) fn double_ghost(ghost: &Ghost, weight: [f64; 3], bell: u32) -> Double
     DoubleGhost { center: ghost.center.to_array(), size: ghost.size.to_array(), weight, bell, pad: 0 }
 }
 
-/// The coefficients that the ghosts of a group share, as the spectrum takes them; none where each has its own.
-pub(super) fn table(series: &Series, group: &Group) -> Option<Vec<[f32; 4]>> {
-    let shape = group.bell.shape();
+/// The coefficients of a group's bell at one size, as the spectrum takes them.
+pub(super) fn table(series: &Series, group: &Group, size: DVec2) -> Vec<[f32; 4]> {
     let single = |coefficient: [f64; 4]| coefficient.map(|x| x as f32);
-    let table = || shape.modes().table(&series.counts, group.smallest / series.period);
-    let tabulated = shape.tabulated() || group.transform != Transform::Dispatch;
-    tabulated.then(|| table().into_iter().map(single).collect())
+    group.bell.shape().modes().table(&series.counts, size / series.period).into_iter().map(single).collect()
 }
 
 /// The modes that the series keeps of those that the plan has computed, as the spectrum has them: three vec4 a mode.
@@ -197,4 +189,16 @@ pub(super) fn uniforms(plan: &Plan, settings: &Settings) -> Composite {
 
 pub(super) fn weight(ghost: &Ghost, plan: &Plan) -> [f64; 3] {
     plan::weight(ghost, plan.units())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::evaluators::RUNS;
+
+    #[test]
+    fn every_kind_of_bell_has_its_run() {
+        let last = Bell::examples().iter().map(Bell::kind).max().unwrap();
+        assert!((last as usize) + 1 < RUNS, "`direct` has no run for a bell of kind {last}");
+    }
 }

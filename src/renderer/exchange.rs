@@ -72,7 +72,7 @@ impl Picture {
     }
 
     fn only_tile(&self, frame: Frame) -> Result<Window> {
-        match self.field.tiles(frame.window)[..] {
+        match self.field.photo_tiles(frame.window)[..] {
             [tile] => Ok(tile),
             _ => Err(Error::Gl("the picture does not fit one tile".into())),
         }

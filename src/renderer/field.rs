@@ -10,24 +10,24 @@ use crate::gpu::field::{FieldPass, Source};
 use crate::gpu::local::LocalPass;
 use crate::gpu::range::RangePass;
 use crate::gpu::runner::Runner;
-use crate::gpu::spectrum::{Coefficients, Ghosts, Spectrum, SpectrumGroup};
+use crate::gpu::spectrum::Spectrum;
 use crate::gpu::{Device, PassTime};
-use crate::plan::{Evaluator, Plan, Precision, Series, Transform};
+use crate::plan::{Evaluator, Plan, Precision, Series};
 use crate::series::waves;
 use crate::{Error, Result};
 
 /// Holds a plan's scene on the device, and evaluates its field: all that certificates and measurements need.
 pub struct Field {
     pub(super) runner: Runner,
-    spectrum: Spectrum,
+    pub(super) spectrum: Spectrum,
     evaluators: Evaluators,
-    exact: Exact,
+    pub(super) exact: Exact,
     pub(super) values: FieldPass,
     pub(super) range: RangePass,
     local: LocalPass,
     /// The frame that the ghosts of a local layer were placed in.
     localised: Option<Frame>,
-    scene: Option<Plan>,
+    pub(super) scene: Option<Plan>,
     /// The frame whose values are held, if any.
     held: Option<Frame>,
     /// The values whose range is on the device, by what tells them from any others.
@@ -94,71 +94,6 @@ impl Field {
         self.evaluators.set_ghosts(&self.runner, &direct, &single)
     }
 
-    fn compute_spectrum(&mut self, plan: &Plan, series: &Series) -> Result<()> {
-        if series.precision == Precision::Double {
-            let modes = self.runner.run("modes", || plan.exact_modes());
-            return self.exact.set_spectrum(&series.counts, modes.as_flattened());
-        }
-        if let Some(modes) = &series.modes {
-            let terms = self.runner.run("modes", || convert::terms(plan, series, modes));
-            return self.spectrum.upload(&series.counts, &terms);
-        }
-        let parts = &series.groups;
-        let (mut spectral, mut sums) = (Vec::new(), Vec::new());
-        for group in parts {
-            let (each, summed) = match &group.transform {
-                Transform::Gather(cells) => {
-                    (Vec::new(), self.runner.run("moments", || convert::gathered(plan, series.period, group, cells)))
-                }
-                _ => (convert::spectral_ghosts(plan, series.period, &group.members), Vec::new()),
-            };
-            spectral.push(each);
-            sums.push(summed);
-        }
-        let tables: Vec<_> = parts.iter().map(|group| convert::table(series, group)).collect();
-        let groups = parts.iter().enumerate().map(|(k, group)| SpectrumGroup {
-            coefficients: match &tables[k] {
-                Some(table) => Coefficients::Table(table),
-                None => Coefficients::Factors(group.bell.shape().shader()),
-            },
-            ghosts: match group.transform {
-                Transform::Gather(_) => Ghosts::Sums(&sums[k]),
-                _ => Ghosts::Each(&spectral[k]),
-            },
-            degree: group.degree,
-        });
-        self.spectrum.compute(&self.runner, &series.counts, &groups.collect::<Vec<_>>())
-    }
-
-    /// Computes the spectrum of ghosts whose bell is a table, whatever bells they name: for each mode that the plan
-    /// keeps, harmonic by harmonic of x, what stands before c_n c_m, s_n s_m, c_n s_m and s_n c_m in the bell's series
-    /// about its own centre, the mode's weight 1, 2 or 4 included.
-    ///
-    /// # Errors
-    /// [`Error::Gl`] where the driver refuses.
-    pub(crate) fn set_tabulated(&mut self, plan: &Plan, table: &[[f32; 4]]) -> Result<()> {
-        self.forget_scene();
-        let everyone: Vec<u32> = (0..plan.problem().ghosts().len() as u32).collect();
-        let group = SpectrumGroup {
-            coefficients: Coefficients::Table(table),
-            ghosts: Ghosts::Each(&convert::spectral_ghosts(plan, plan.period(), &everyone)),
-            degree: plan.degree(),
-        };
-        self.spectrum.compute(&self.runner, plan.counts(), &[group])?;
-        self.runner.device().check("computing the spectrum")?;
-        self.scene = Some(plan.clone());
-        Ok(())
-    }
-
-    /// Rounds the spectrum as a store of 16-bit floats would, whose scale is its largest term: what such a store would
-    /// cost in accuracy. The next [`Field::set_scene`] of the same plan keeps it; [`Field::forget_scene`] does not.
-    ///
-    /// # Errors
-    /// [`Error::Gl`] where the driver refuses.
-    pub(crate) fn round_spectrum(&mut self) -> Result<()> {
-        self.spectrum.round_to_half()
-    }
-
     /// Waits until the device has done all that it was asked to.
     pub fn finish(&self) {
         self.runner.device().finish();
@@ -187,7 +122,7 @@ impl Field {
     pub fn probe(&mut self, frame: Frame, pixels: &[[i32; 2]]) -> Result<Vec<[f64; 3]>> {
         let scale = self.plan()?.units();
         let mut values = vec![[0.0; 3]; pixels.len()];
-        for tile in self.tiles(frame.window) {
+        for tile in self.tiles(frame) {
             let inside = |&[i, j]: &[i32; 2]| {
                 (0..tile.width as i32).contains(&(i - tile.x)) && (0..tile.height as i32).contains(&(j - tile.y))
             };
@@ -216,7 +151,7 @@ impl Field {
     pub fn visit(&mut self, frame: Frame, mut visit: impl FnMut(Window, &[[f64; 3]])) -> Result<()> {
         let scale = self.plan()?.units();
         self.held = None;
-        for tile in self.tiles(frame.window) {
+        for tile in self.tiles(frame) {
             let source = self.evaluate(frame, tile)?;
             let mut pixels = vec![[0.0f32; 4]; tile.pixels()];
             let field = self.values.draw(&self.runner, source, tile.width, tile.height)?;
@@ -247,12 +182,36 @@ impl Field {
         self.scene.as_ref().ok_or_else(|| Error::Gl("the renderer has no scene".into()))
     }
 
-    pub(super) fn tiles(&self, window: Window) -> Vec<Window> {
+    /// The parts of a frame's window that are evaluated one after the other.
+    pub(super) fn tiles(&self, frame: Frame) -> Vec<Window> {
+        let [columns, rows] = self.lattice_sides(frame);
+        let side = self.side();
+        tiles::split(frame.window, [columns.min(side), rows.min(side)], self.most_pixels())
+    }
+
+    /// The parts of a window that a photo comes in. There are no fewer of those that are evaluated.
+    pub(super) fn photo_tiles(&self, window: Window) -> Vec<Window> {
+        tiles::split(window, [self.side(); 2], self.most_pixels())
+    }
+
+    /// The most columns and rows that anything is drawn on.
+    fn side(&self) -> u32 {
         let limits = &self.runner.device().info().limits;
-        let side = limits.texture_size.min(limits.viewport[0]).min(limits.viewport[1]);
+        limits.texture_size.min(limits.viewport[0]).min(limits.viewport[1])
+    }
+
+    /// The most pixels of a tile.
+    fn most_pixels(&self) -> usize {
         // Drivers reset themselves when one draw takes seconds, and `direct` can make that of a tile of any size.
         let bells = self.scene.as_ref().map_or(0, Plan::summed).max(1);
-        tiles::split(window, side, self.tile_pixels.min((tiles::BELLS / bells).max(1)))
+        self.tile_pixels.min((tiles::BELLS / bells).max(1))
+    }
+
+    /// The most columns and rows that the plan's lattice, if it has one, lets a tile have.
+    fn lattice_sides(&self, frame: Frame) -> [u32; 2] {
+        let texture_size = self.runner.device().info().limits.texture_size;
+        let lattice = self.scene.as_ref().and_then(Plan::lattice);
+        lattice.map_or([u32::MAX; 2], |lattice| tiles::sides_on(lattice, frame, texture_size))
     }
 
     /// Evaluates all of a frame once and holds it: until the scene changes, pictures of this frame look it up, and a change
@@ -262,19 +221,39 @@ impl Field {
     /// [`crate::Error::Gl`] where the driver refuses, or where there is no scene.
     pub fn hold(&mut self, frame: Frame) -> Result<()> {
         if self.held != Some(frame) {
-            let source = self.evaluate(frame, frame.window)?;
-            let bands = self.tiles(frame.window).len() as u32;
-            self.values.draw_in_bands(&self.runner, source, [frame.window.width, frame.window.height], bands)?;
+            let size = [frame.window.width, frame.window.height];
+            let bands = self.photo_tiles(frame.window).len() as u32;
+            match &self.pieces(frame)[..] {
+                [_] => {
+                    let source = self.evaluate(frame, frame.window)?;
+                    self.values.draw_in_bands(&self.runner, source, size, bands)?;
+                }
+                pieces => {
+                    self.held = None;
+                    self.values.begin(&self.runner, size)?;
+                    for &piece in pieces {
+                        let source = self.evaluate(frame, piece)?;
+                        let at = [piece.x - frame.window.x, piece.y - frame.window.y].map(|side| side as u32);
+                        self.values.draw_piece(&self.runner, source, at, [piece.width, piece.height], bands)?;
+                    }
+                }
+            }
             self.held = Some(frame);
         }
         Ok(())
     }
 
+    /// The parts of a window that the evaluator can be readied for: all of it, but where its lattice is very fine.
+    fn pieces(&self, frame: Frame) -> Vec<Window> {
+        tiles::split(frame.window, self.lattice_sides(frame), usize::MAX)
+    }
+
     /// Readies the field of a whole frame: the one that is held, or the evaluator.
     pub(super) fn whole(&mut self, frame: Frame) -> Result<Source> {
-        if self.held != Some(frame) {
+        if self.held != Some(frame) && self.pieces(frame).len() == 1 {
             return self.evaluate(frame, frame.window);
         }
+        self.hold(frame)?;
         self.values.bind();
         Ok(Source::HELD)
     }
@@ -292,7 +271,7 @@ impl Field {
         }
         self.range.reset();
         (self.held, self.ranged) = (None, None);
-        for tile in self.tiles(frame.window) {
+        for tile in self.tiles(frame) {
             let source = self.evaluate(frame, tile)?;
             let field = self.values.draw(&self.runner, source, tile.width, tile.height)?;
             self.range.add(&self.runner, field, scale)?;

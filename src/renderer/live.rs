@@ -79,7 +79,7 @@ impl Live {
         let layers = Layers { size: self.picture.composite.size()?, photo, picture: None, field };
         let mut defines = view.defines(&layers, region);
         if field.is_some() {
-            defines.extend([("MIXED", "1"), ("NORMALIZE", convert::normalize(settings))]);
+            defines.extend([("MIXED", "1"), ("NORMALIZE", convert::normalize(settings).0)]);
             defines.extend((part == Part::Glare).then_some(("GLARE_ALONE", "1")));
         }
         let rgb = |[red, green, blue, _]: [f32; 4]| [red, green, blue];

@@ -7,25 +7,28 @@ use super::convert::{double_ghost, weight};
 use crate::Result;
 use crate::frame::Frame;
 use crate::gpu::layout::{DoubleGhost, LocalGhost};
-use crate::gpu::local::{Drawn, Kind, Listed, LocalPass};
+use crate::gpu::local::{Drawn, Kind, Listed, LocalPass, list_step};
 use crate::gpu::runner::Runner;
 use crate::plan::{self, Area, Local, Plan, Precision};
 use crate::scene::Ghost;
 use crate::series::Bell;
 
-/// Lists are multiples of this where one of them is long: what a shader goes through in one round; and what is not long.
-const FEW: usize = 1 << 15;
-const STEP: usize = crate::gpu::evaluators::STEP;
-
 const _: () = assert!(plan::LARGEST_POINT as i32 == crate::gpu::layout::LARGEST_POINT);
+const _: () = assert!(plan::GHOSTS_A_ROUND == crate::gpu::evaluators::STEP);
 
 /// A ghost with what is known of it.
 struct Placed<'a> {
     ghost: &'a Ghost,
     weight: [f64; 3],
     area: Area,
-    /// Where its bell's parameters begin, and its kind where there are several.
+    /// Where its bell's parameters begin.
     bell: u32,
+}
+
+impl Placed<'_> {
+    fn kind(&self) -> u32 {
+        self.ghost.bell.kind()
+    }
 }
 
 /// Uploads the ghosts of a plan's local layer for a frame.
@@ -37,12 +40,11 @@ pub(super) fn upload(plan: &Plan, local: &Local, frame: Frame, pass: &mut LocalP
     let shapes = Shapes::of(plan, local, as_drawn);
     let mut placed = Vec::new();
     for (group, &begin) in local.groups.iter().zip(&shapes.begins) {
-        let kind = if shapes.several && !as_drawn { group.bell.kind() << 24 } else { 0 };
         let one = |(place, &index): (usize, &u32)| {
             let ghost = &plan.problem().ghosts()[index as usize];
             let weight = weight(ghost, plan);
             let largest = weight.iter().fold(0.0f64, |largest, weight| largest.max(weight.abs()));
-            let bell = (begin + if shapes.each(&group.bell) { place as u32 } else { 0 }) | kind;
+            let bell = begin + if shapes.each(&group.bell) { place as u32 } else { 0 };
             Placed { ghost, weight, area: local.area(ghost, largest, frame), bell }
         };
         let members = group.members.par_iter().enumerate().map(one);
@@ -51,8 +53,8 @@ pub(super) fn upload(plan: &Plan, local: &Local, frame: Frame, pass: &mut LocalP
     if as_drawn {
         let mut kinds: Vec<Kind> = Vec::new();
         // Stable: the order in which ghosts are added up is that of the scene but for this.
-        placed.sort_by_key(|placed| (placed.ghost.bell.kind(), !placed.area.point));
-        for ghosts in placed.chunk_by(|a, b| a.ghost.bell.kind() == b.ghost.bell.kind()) {
+        placed.sort_by_key(|placed| (placed.kind(), !placed.area.point));
+        for ghosts in placed.chunk_by(|a, b| a.kind() == b.kind()) {
             let first = kinds.last().map_or(0, |kind| kind.quads.end);
             let points = first + ghosts.iter().take_while(|placed| placed.area.point).count();
             let bell = ghosts[0].ghost.bell.shape().shader();
@@ -62,17 +64,15 @@ pub(super) fn upload(plan: &Plan, local: &Local, frame: Frame, pass: &mut LocalP
         let single: Vec<[f32; 4]> = shapes.rows.iter().map(|row| row.map(|x| x as f32)).collect();
         return pass.set_drawn(&Drawn { ghosts: &ghosts, kinds: &kinds }, &single);
     }
-    let shift = plan::block_shift(local.side());
-    let (lists, blocks, step) = lists(&placed, frame, shift);
+    let lists = Lists::new(&placed, frame, plan::block_shift(local.side()));
     let mut ghosts: Vec<_> =
         placed.par_iter().map(|placed| double_ghost(placed.ghost, placed.weight, placed.bell)).collect();
     ghosts.push(DoubleGhost::NONE);
-    pass.set_listed(runner, &Listed { ghosts: &ghosts, lists: &lists, blocks, shift, step }, &shapes.rows)
+    pass.set_listed(runner, &lists.of(&ghosts), &shapes.rows)
 }
 
 /// The parameters of the bells of a layer.
 struct Shapes {
-    several: bool,
     /// Where those of each group begin.
     begins: Vec<u32>,
     /// Where they are drawn, for offsets in sizes: then a periodic bell has a row for each ghost.
@@ -82,9 +82,7 @@ struct Shapes {
 
 impl Shapes {
     fn of(plan: &Plan, local: &Local, drawn: bool) -> Self {
-        let first = local.groups.first().map_or(0, |group| group.bell.kind());
-        let several = local.groups.iter().any(|group| group.bell.kind() != first);
-        let mut shapes = Self { several, begins: Vec::new(), rows: Vec::new(), drawn };
+        let mut shapes = Self { begins: Vec::new(), rows: Vec::new(), drawn };
         let mut begins: Vec<(&Bell, u32)> = Vec::new();
         for group in &local.groups {
             let parameters = group.bell.shape().parameters();
@@ -138,41 +136,61 @@ fn drawn(placed: &Placed<'_>, frame: Frame) -> LocalGhost {
     }
 }
 
-/// For each block of the window where its list begins, and where the last one ends; then the lists, filled up with the ghost
-/// that is none. How many columns and rows of blocks there are; and what the lists are multiples of.
-fn lists(placed: &[Placed<'_>], frame: Frame, shift: u32) -> (Vec<u32>, [u32; 2], usize) {
-    let window = frame.window;
-    let blocks = [window.width, window.height].map(|side| side.div_ceil(1 << shift));
-    let count = (blocks[0] * blocks[1]) as usize;
-    let of = |area: &Area| {
-        let span = |axis: usize, origin: i32| {
-            let side = [window.width, window.height][axis] as i32;
-            let [first, last] =
-                [area.first[axis], area.last[axis] - 1].map(|place| (place - origin).clamp(0, side - 1) as u32);
-            first >> shift..=last >> shift
+/// The ghosts that reach each block of pixels.
+struct Lists {
+    /// As [`Listed`] has them.
+    numbers: Vec<u32>,
+    kinds: u32,
+    blocks: [u32; 2],
+    shift: u32,
+    longest: usize,
+}
+
+impl Lists {
+    fn new(placed: &[Placed<'_>], frame: Frame, shift: u32) -> Self {
+        let window = frame.window;
+        let blocks = [window.width, window.height].map(|side| side.div_ceil(1 << shift));
+        let count = (blocks[0] * blocks[1]) as usize;
+        let several = placed.iter().any(|one| one.kind() != placed[0].kind());
+        let kinds = if several { placed.iter().map(|one| one.kind() as usize + 1).max().unwrap_or(1) } else { 1 };
+        let of = |placed: &Placed<'_>| {
+            let span = |axis: usize, origin: i32| {
+                let side = [window.width, window.height][axis] as i32;
+                let [first, last] = [placed.area.first[axis], placed.area.last[axis] - 1]
+                    .map(|place| (place - origin).clamp(0, side - 1) as u32);
+                first >> shift..=last >> shift
+            };
+            let (columns, rows) = (span(0, window.x), span(1, window.y));
+            let kind = if several { placed.kind() as usize * count } else { 0 };
+            rows.flat_map(move |row| columns.clone().map(move |column| kind + (row * blocks[0] + column) as usize))
         };
-        let (columns, rows) = (span(0, window.x), span(1, window.y));
-        rows.flat_map(move |row| columns.clone().map(move |column| (row * blocks[0] + column) as usize))
-    };
-    let mut lengths = vec![0usize; count];
-    placed.iter().for_each(|placed| of(&placed.area).for_each(|block| lengths[block] += 1));
-    // One after the other, where the longest list is none that a software renderer would not end: many are short.
-    let step = if lengths.iter().all(|&length| length < FEW) { 1 } else { STEP };
-    let mut starts = Vec::with_capacity(count + 1);
-    let mut end = count + 1;
-    for length in &lengths {
-        starts.push(end as u32);
-        end += length.next_multiple_of(step);
-    }
-    starts.push(end as u32);
-    let mut lists = vec![placed.len() as u32; end];
-    let mut next: Vec<usize> = starts.iter().map(|&start| start as usize).collect();
-    lists[..=count].copy_from_slice(&starts);
-    for (index, placed) in placed.iter().enumerate() {
-        for block in of(&placed.area) {
-            lists[next[block]] = index as u32;
-            next[block] += 1;
+        let mut lengths = vec![0usize; kinds * count];
+        placed.iter().for_each(|placed| of(placed).for_each(|list| lengths[list] += 1));
+        let in_block = |block: usize| (0..kinds).map(|kind| lengths[kind * count + block]).sum();
+        let longest = (0..count).map(in_block).max().unwrap_or(0);
+        let step = list_step(longest);
+        let mut starts = Vec::with_capacity(lengths.len() + 1);
+        let mut end = lengths.len() + 1;
+        for length in &lengths {
+            starts.push(end as u32);
+            end += length.next_multiple_of(step);
         }
+        starts.push(end as u32);
+        // What fills a list up is the ghost that is none.
+        let mut numbers = vec![placed.len() as u32; end];
+        let mut next: Vec<usize> = starts.iter().map(|&start| start as usize).collect();
+        numbers[..starts.len()].copy_from_slice(&starts);
+        for (index, placed) in placed.iter().enumerate() {
+            for list in of(placed) {
+                numbers[next[list]] = index as u32;
+                next[list] += 1;
+            }
+        }
+        Self { numbers, kinds: kinds as u32, blocks, shift, longest }
     }
-    (lists, blocks, step)
+
+    fn of<'a>(&'a self, ghosts: &'a [DoubleGhost]) -> Listed<'a> {
+        let &Self { ref numbers, kinds, blocks, shift, longest } = self;
+        Listed { ghosts, lists: numbers, kinds, blocks, shift, longest }
+    }
 }

@@ -54,7 +54,7 @@ impl Picture {
         let uniforms = self.start(frame, settings)?;
         assert_eq!(pixels.len(), frame.window.pixels(), "as many pixels as the window has");
         let mut pending = Pending::default();
-        for tile in self.field.tiles(frame.window) {
+        for tile in self.field.tiles(frame) {
             let source = self.field.evaluate(frame, tile)?;
             self.upload(frame, tile, pixels)?;
             self.composite.draw(&self.field.runner, convert::variant(source, settings), &uniforms)?;
@@ -93,7 +93,7 @@ impl Picture {
         let uniforms = self.start(frame, settings)?;
         let stride = frame.window.width as usize;
         let mut pixels = vec![[0.0; 4]; frame.window.pixels()];
-        for tile in self.field.tiles(frame.window) {
+        for tile in self.field.tiles(frame) {
             let source = self.field.evaluate(frame, tile)?;
             let size = [tile.width, tile.height];
             let glare =

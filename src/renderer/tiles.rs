@@ -8,7 +8,7 @@ use glam::DVec2;
 use crate::frame::{Frame, Window};
 use crate::gpu::evaluators::LatticeTile;
 use crate::gpu::exact::{self, ExactTile};
-use crate::gpu::layout::Knots;
+use crate::gpu::layout::{KNOT_BITS, Knots};
 use crate::plan::{DOUBLE_ORDER, Lattice};
 use crate::series::{phase, spline_gains, waves};
 
@@ -20,10 +20,14 @@ pub(super) const PIXELS: usize = 4 << 20;
 /// Bells that one draw may evaluate.
 pub(super) const BELLS: usize = 20_000_000_000;
 
-/// Splits a window into tiles of at most `side` pixels a side and `pixels` in all; whole rows where possible.
-pub(super) fn split(window: Window, side: u32, pixels: usize) -> Vec<Window> {
-    let width = window.width.min(side).min(u32::try_from(pixels).unwrap_or(u32::MAX)).max(1);
-    let height = ((pixels / width as usize) as u32).clamp(1, side);
+/// Most nodes along an axis that places in 32 bits tell apart, the first and the last of which may lie a pixel outside.
+const MOST_NODES: u32 = 4000;
+const _: () = assert!(MOST_NODES < (1 << (32 - KNOT_BITS)) - 1);
+
+/// Splits a window into tiles of at most so many columns and rows, and `pixels` in all; whole rows where possible.
+pub(super) fn split(window: Window, [columns, rows]: [u32; 2], pixels: usize) -> Vec<Window> {
+    let width = window.width.min(columns).min(u32::try_from(pixels).unwrap_or(u32::MAX)).max(1);
+    let height = u32::try_from(pixels / width as usize).unwrap_or(u32::MAX).clamp(1, rows);
     let mut tiles = Vec::new();
     for y in (0..window.height).step_by(height as usize) {
         for x in (0..window.width).step_by(width as usize) {
@@ -41,6 +45,16 @@ pub(super) fn split(window: Window, side: u32, pixels: usize) -> Vec<Window> {
 /// Phases of `count` positions along one axis.
 pub(super) fn phases(count: u32, position: impl Fn(f64) -> f64, period: f64) -> Vec<u32> {
     (0..count).map(|index| phase(position(f64::from(index)), period)).collect()
+}
+
+/// The most columns and rows of a tile whose lattice a shader can index, and textures of so many texels a side hold: three of
+/// them for each node of a row.
+pub(super) fn sides_on(lattice: &Lattice, frame: Frame, texture_size: u32) -> [u32; 2] {
+    let pitch = (frame.pixel_sides() / lattice.step).to_array();
+    let most = [texture_size / 3, texture_size].map(|most| f64::from(most.min(MOST_NODES)));
+    // So many nodes hold a pixel, and rounding may ask for one more.
+    let hold = f64::from(lattice.order + 1);
+    [0, 1].map(|axis| ((most[axis] - hold) / pitch[axis]).floor().max(0.0) as u32).map(|side| side.saturating_add(1))
 }
 
 /// The same positions in periods, within half of one.
@@ -117,7 +131,7 @@ impl Nodes {
     }
 }
 
-/// Nodes from pixel to pixel, in 2⁻²⁰ of a node.
+/// Nodes from pixel to pixel, with [`KNOT_BITS`] bits after the point.
 #[derive(Clone, Copy)]
 struct Pitch(u64);
 
@@ -131,8 +145,7 @@ struct Span {
 }
 
 impl Pitch {
-    /// Bits after the point: the 12 before it suffice for [`crate::plan::MOST_NODES`].
-    const BITS: u32 = 20;
+    const BITS: u32 = KNOT_BITS;
 
     /// Rounded so that the nodes lie closer together than the plan wants, never farther apart.
     fn new(nodes: f64) -> Self {
@@ -161,9 +174,11 @@ mod tests {
     #[test]
     fn tiles_cover_every_pixel_once() {
         let window = Window { x: -3, y: 5, width: 17, height: 31 };
-        for (side, pixels) in [(16384, 1 << 22), (16384, 40), (5, 1 << 22), (7, 9), (1, 1)] {
-            let tiles = split(window, side, pixels);
-            assert!(tiles.iter().all(|tile| tile.width <= side && tile.height <= side && tile.pixels() <= pixels));
+        for ([columns, rows], pixels) in
+            [([16384; 2], 1 << 22), ([16384; 2], 40), ([5; 2], 1 << 22), ([9, 4], 1 << 22), ([7; 2], 9), ([1; 2], 1)]
+        {
+            let tiles = split(window, [columns, rows], pixels);
+            assert!(tiles.iter().all(|tile| tile.width <= columns && tile.height <= rows && tile.pixels() <= pixels));
             let mut seen = vec![0; window.pixels()];
             for tile in &tiles {
                 for j in 0..tile.height as i32 {
@@ -172,8 +187,37 @@ mod tests {
                     }
                 }
             }
-            assert!(seen.iter().all(|&count| count == 1), "{side} {pixels}");
+            assert!(seen.iter().all(|&count| count == 1), "{columns} {rows} {pixels}");
         }
+    }
+
+    #[test]
+    fn a_tile_as_large_as_its_lattice_allows_has_no_more_nodes_than_can_be_told_apart() {
+        let frame = Frame::full(3000, 2000);
+        let mut tightest = 0;
+        for step in [1e-9, 1e-5, 3.3e-5, 1e-4, 7e-4, 2e-3, 0.1, 40.0] {
+            let lattice =
+                Lattice { order: 4, step: DVec2::splat(step), nodes: [0; 2], oversampling: DVec2::ONE, error: 0.0 };
+            for texture_size in [256, 16384] {
+                let most = [(texture_size / 3).min(MOST_NODES), texture_size.min(MOST_NODES)];
+                let [width, height] = sides_on(&lattice, frame, texture_size);
+                let [width, height] = [width.min(frame.width), height.min(frame.height)];
+                for from in [0, 1, 7].map(|from| from.min(frame.width - width).min(frame.height - height) as i32) {
+                    let tile = Window { x: from, y: from, width, height };
+                    let nodes = Nodes::new(&lattice, DVec2::new(5.0, 4.0), frame, tile);
+                    for axis in [0, 1] {
+                        let count = nodes.count(axis) as u32;
+                        assert!(count <= most[axis], "{step} {texture_size}: {count} nodes");
+                        let last = [width, height][axis] - 1;
+                        let end =
+                            u64::from(nodes.knots[axis].start) + u64::from(last) * u64::from(nodes.knots[axis].pitch);
+                        assert!(end <= u64::from(u32::MAX), "{step}: the last pixel's place is beyond 32 bits");
+                        tightest = tightest.max(count);
+                    }
+                }
+            }
+        }
+        assert!(tightest > MOST_NODES - 100, "{tightest}");
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec2};
 
 use crate::gpu::Region;
+use crate::gpu::layout::{TONE_MAP_ACES, TONE_MAP_AGX, TONE_MAP_NONE, TONE_MAP_REINHARD};
 use crate::gpu::shrink::Place;
 use crate::gpu::view::{Layers, View as Uniforms};
 use crate::photo::ToneMap;
@@ -62,12 +63,12 @@ impl View {
     /// What the shader is specialised with for this view of these layers.
     pub(super) fn defines(&self, layers: &Layers<'_>, region: Region) -> Vec<(&'static str, &'static str)> {
         let tone_map = match self.tone_map {
-            ToneMap::None => "0",
-            ToneMap::Reinhard => "1",
-            ToneMap::Aces => "2",
-            ToneMap::Agx => "3",
+            ToneMap::None => TONE_MAP_NONE,
+            ToneMap::Reinhard => TONE_MAP_REINHARD,
+            ToneMap::Aces => TONE_MAP_ACES,
+            ToneMap::Agx => TONE_MAP_AGX,
         };
-        let mut defines = vec![("TONE_MAP", tone_map)];
+        let mut defines = vec![("TONE_MAP", tone_map.0)];
         if layers.picture.is_none() && layers.field.is_none() {
             defines.push(("BEFORE", "1"));
         } else if self.wiped(region) == Wiped::Part {

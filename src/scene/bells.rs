@@ -1,6 +1,7 @@
 //! The bells that scene and lens files name.
 
 use std::collections::HashMap;
+use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -10,7 +11,7 @@ use toml::Spanned;
 
 use super::file::contents;
 use super::number::Finite;
-use crate::series::{Bell, Profile, SineGaussian, VonMises};
+use crate::series::{Bell, Disc, Profile, SineGaussian, VonMises};
 
 /// The names of bells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -23,6 +24,7 @@ pub(super) enum BellName {
     VonMises,
     SineGaussian,
     Profile,
+    Disc,
 }
 
 /// A radial profile: rows in the file itself, or in a CSV file beside it.
@@ -34,16 +36,33 @@ pub(super) struct ProfileTable {
     file: Option<String>,
 }
 
+/// The rim of a disc that says nothing of it, in sizes.
+const RIM: f64 = 0.1;
+
 /// What a table says of its ghost's bell.
 pub(super) struct BellKeys {
     pub bell: Option<Spanned<BellName>>,
     pub profile: Option<Spanned<String>>,
     pub mean: Option<Spanned<Finite>>,
+    pub rim: Option<Spanned<Finite>>,
+    pub blades: Option<Spanned<u32>>,
+    pub rotation: Option<Spanned<Finite>>,
+}
+
+impl BellKeys {
+    /// The keys of a disc, and where they are.
+    fn of_disc(&self) -> [(&'static str, Option<Range<usize>>); 3] {
+        [
+            ("rim", self.rim.as_ref().map(Spanned::span)),
+            ("blades", self.blades.as_ref().map(Spanned::span)),
+            ("rotation", self.rotation.as_ref().map(Spanned::span)),
+        ]
+    }
 }
 
 /// What is wrong with a part of a file.
 pub(super) struct Fault {
-    pub span: std::ops::Range<usize>,
+    pub span: Range<usize>,
     pub message: String,
 }
 
@@ -107,6 +126,7 @@ impl Bells {
                 let unknown = || fault(wanted, format!("there is no [[profile]] called {:?}", wanted.as_ref()));
                 Bell::Profile(self.profiles.get(wanted.as_ref()).ok_or_else(unknown)?.clone())
             }
+            BellName::Disc => Bell::Disc(disc(keys, name)?),
         })
     }
 
@@ -114,6 +134,10 @@ impl Bells {
     fn only(&self, keys: &BellKeys, name: Option<BellName>) -> Result<(), Fault> {
         if let Some(profile) = keys.profile.as_ref().filter(|_| name != Some(BellName::Profile)) {
             return Err(fault(profile, "`profile` belongs to a bell = \"profile\""));
+        }
+        let of_disc = keys.of_disc().into_iter().find_map(|(key, span)| Some((key, span?)));
+        if let Some((key, span)) = of_disc.filter(|_| name != Some(BellName::Disc)) {
+            return Err(Fault { span, message: format!("`{key}` belongs to a bell = \"disc\"") });
         }
         let Some(mean) = &keys.mean else { return Ok(()) };
         if name != Some(BellName::SineGaussian) {
@@ -124,6 +148,21 @@ impl Bells {
         }
         Ok(())
     }
+}
+
+/// The disc that a table says.
+fn disc(keys: &BellKeys, name: &Spanned<BellName>) -> Result<Disc, Fault> {
+    let number = |key: &Option<Spanned<Finite>>| key.as_ref().map(|number| number.as_ref().0);
+    let (rim, rotation) = (number(&keys.rim).unwrap_or(RIM), number(&keys.rotation).unwrap_or(0.0));
+    let blades = keys.blades.as_ref().map_or(0, |blades| *blades.as_ref());
+    let [of_rim, of_blades, of_rotation] = keys.of_disc().map(|(_, span)| {
+        let span = span.unwrap_or(name.span());
+        move |message: String| Fault { span, message }
+    });
+    // Key by key, each with what is right by itself for those that follow.
+    Disc::new(rim, 0, 0.0).map_err(of_rim)?;
+    Disc::new(RIM, blades, 0.0).map_err(of_blades)?;
+    Disc::new(rim, blades, rotation).map_err(of_rotation)
 }
 
 fn spelt(name: &Spanned<BellName>) -> &'static str {

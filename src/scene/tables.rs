@@ -78,6 +78,9 @@ pub(super) struct GhostTable {
     bell: Option<Spanned<BellName>>,
     profile: Option<Spanned<String>>,
     mean: Option<Spanned<Finite>>,
+    rim: Option<Spanned<Finite>>,
+    blades: Option<Spanned<u32>>,
+    rotation: Option<Spanned<Finite>>,
     center: [Finite; 2],
     size: Sizes,
     radiance: [Finite; 3],
@@ -89,6 +92,9 @@ pub(super) struct LensGhostTable {
     bell: Option<Spanned<BellName>>,
     profile: Option<Spanned<String>>,
     mean: Option<Spanned<Finite>>,
+    rim: Option<Spanned<Finite>>,
+    blades: Option<Spanned<u32>>,
+    rotation: Option<Spanned<Finite>>,
     along: Finite,
     size: Sizes,
     #[serde(default = "white")]
@@ -126,8 +132,8 @@ impl SceneTable {
 impl GhostTable {
     /// The ghost, if its bell is to be had.
     pub fn ghost(self, bells: &Bells) -> Result<Ghost, Fault> {
-        let Self { bell, profile, mean, center, size, radiance } = self;
-        let bell = bells.bell(&BellKeys { bell, profile, mean })?;
+        let Self { bell, profile, mean, rim, blades, rotation, center, size, radiance } = self;
+        let bell = bells.bell(&BellKeys { bell, profile, mean, rim, blades, rotation })?;
         Ok(Ghost { bell, center: DVec2::from_array(plain(center)), size: size.0, radiance: plain(radiance) })
     }
 }
@@ -135,9 +141,9 @@ impl GhostTable {
 impl LensGhostTable {
     /// The lens ghost, if its bell is to be had and can carry light.
     pub fn lens_ghost(self, bells: &Bells) -> Result<LensGhost, Fault> {
-        let Self { bell, profile, mean, along, size, tint, share } = self;
+        let Self { bell, profile, mean, rim, blades, rotation, along, size, tint, share } = self;
         let span = profile.as_ref().map_or(0..0, Spanned::span);
-        let bell = bells.bell(&BellKeys { bell, profile, mean })?;
+        let bell = bells.bell(&BellKeys { bell, profile, mean, rim, blades, rotation })?;
         if bell.shape().integral(size.0) <= 0.0 {
             return Err(Fault {
                 span,

@@ -126,24 +126,35 @@ impl From<&Light> for LightOut {
 }
 
 /// A bell, as the keys that name it.
-#[derive(Serialize)]
+#[derive(Serialize, Default)]
 struct BellOut {
     bell: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     profile: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     mean: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rim: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    blades: Option<u32>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rotation: Option<f64>,
 }
 
 impl BellOut {
     fn new(bell: &Bell, profiles: &mut Profiles) -> Self {
-        let (mut profile, mut mean) = (None, None);
+        let mut out = Self { bell: bell.shape().name(), ..Self::default() };
         match bell {
-            Bell::Profile(table) => profile = Some(profiles.name(table)),
-            Bell::SineGaussian(bell) => mean = Some(bell.mean),
+            Bell::Profile(table) => out.profile = Some(profiles.name(table)),
+            Bell::SineGaussian(bell) => out.mean = Some(bell.mean),
+            Bell::Disc(disc) => {
+                out.rim = Some(disc.rim());
+                let bladed = !disc.is_round();
+                (out.blades, out.rotation) = (bladed.then(|| disc.blades()), bladed.then(|| disc.rotation()));
+            }
             _ => {}
         }
-        Self { bell: bell.shape().name(), profile, mean }
+        out
     }
 }
 

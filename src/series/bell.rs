@@ -10,7 +10,7 @@ use super::cosine_squared::CosineSquared;
 use super::gaussian::Gaussian;
 use super::parabola::Parabola;
 use super::paraboloid::Paraboloid;
-use super::{Profile, SineGaussian, VonMises, kappa};
+use super::{Disc, Profile, SineGaussian, VonMises, kappa};
 
 /// A bell: a ghost's profile.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,6 +29,8 @@ pub enum Bell {
     SineGaussian(SineGaussian),
     /// A radial profile, as a table.
     Profile(Arc<Profile>),
+    /// A flat disc, round or with blades.
+    Disc(Disc),
 }
 
 impl Bell {
@@ -42,10 +44,20 @@ impl Bell {
             Self::VonMises(bell) => bell,
             Self::SineGaussian(bell) => bell,
             Self::Profile(profile) => &**profile,
+            Self::Disc(disc) => disc,
         }
     }
 
-    /// Which bell it is, as `shaders/bells/any.glsl` counts them.
+    /// The same bell in another period, where it is periodic itself; any other as it is.
+    pub fn in_period(self, period: DVec2) -> Self {
+        match self {
+            Self::VonMises(_) => Self::VonMises(VonMises { period }),
+            Self::SineGaussian(bell) => Self::SineGaussian(SineGaussian { period, ..bell }),
+            other => other,
+        }
+    }
+
+    /// Which bell it is, as `shaders/bells/any.glsl` counts them: each that is a shader of its own.
     pub(crate) fn kind(&self) -> u32 {
         match self {
             Self::Gaussian => 0,
@@ -55,6 +67,8 @@ impl Bell {
             Self::VonMises(_) => 4,
             Self::SineGaussian(_) => 5,
             Self::Profile(_) => 6,
+            Self::Disc(disc) if disc.is_round() => 7,
+            Self::Disc(_) => 8,
         }
     }
 
@@ -62,6 +76,7 @@ impl Bell {
     /// tests walk.
     pub fn examples() -> Vec<Self> {
         let period = DVec2::new(4.0, 3.0);
+        let [round, bladed] = Disc::examples();
         vec![
             Self::Gaussian,
             Self::CosineSquared,
@@ -70,6 +85,8 @@ impl Bell {
             Self::VonMises(VonMises { period }),
             Self::SineGaussian(SineGaussian { period, mean: 0.5 }),
             Self::Profile(Arc::new(Profile::example())),
+            Self::Disc(round),
+            Self::Disc(bladed),
         ]
     }
 }
@@ -132,7 +149,7 @@ pub trait Shape: Sync {
     /// The mean square distance from the centre along one axis, in sizes squared; what a light's extent adds to.
     fn variance(&self) -> f64;
 
-    /// How the series comes about.
+    /// How the series comes about, if there is one.
     fn modes(&self) -> Modes<'_>;
 
     /// Whether the coefficients come from a table that ghosts of one size share, instead of a formula in GLSL.
@@ -158,6 +175,8 @@ pub enum Modes<'a> {
     Product(&'a dyn Factor),
     /// The bell depends on the radius alone, the axes scaled by the sizes.
     Radial(&'a dyn Radial),
+    /// Not at all: the bell has no series, and is summed, where it reaches or at every pixel.
+    None,
 }
 
 /// A factor u of a product bell, along one axis. Sizes are in periods.
@@ -241,7 +260,8 @@ impl dyn Radial + '_ {
 
 impl Modes<'_> {
     /// The coefficients of the kept modes, harmonic by harmonic of x, of a size in periods: what stands before c_n c_m,
-    /// s_n s_m, c_n s_m and s_n c_m in the bell's series about its centre, the weight κ included.
+    /// s_n s_m, c_n s_m and s_n c_m in the bell's series about its centre, the weight κ included. Of a bell without a series
+    /// they are not numbers.
     pub fn table(&self, counts: &[u32], size: DVec2) -> Vec<[f64; 4]> {
         let highest = counts.iter().max().map_or(0, |&most| most.max(1) - 1);
         match self {
@@ -258,6 +278,7 @@ impl Modes<'_> {
                 let coefficient = |((n, m), mean)| [kappa(n, m) * mean, 0.0, 0.0, 0.0];
                 modes(counts).zip(radial.means(counts, size)).map(coefficient).collect()
             }
+            Self::None => modes(counts).map(|_| [f64::NAN; 4]).collect(),
         }
     }
 }

@@ -16,9 +16,11 @@
 
 mod bell;
 mod cosine_squared;
+mod disc;
 pub mod fourier_bessel;
 mod gaussian;
 pub mod moments;
+mod nodes;
 pub mod numeric;
 mod parabola;
 mod paraboloid;
@@ -32,6 +34,7 @@ mod tails;
 mod waves;
 
 pub use bell::{Bell, Factor, Modes, Radial, Shape};
+pub use disc::{Disc, MOST_BLADES};
 pub use gaussian::{windowed_gaussian, wrapped_gaussian};
 pub use periodic::{SineGaussian, VonMises};
 pub use profile::Profile;

@@ -72,6 +72,10 @@ fn no_value_is_beyond_one_and_no_bell_is_lopsided() {
                 // The prototype's periodic bell is symmetric about a quarter of its period instead.
                 let mirrored = match &bell {
                     Bell::SineGaussian(SineGaussian { period, .. }) => 0.5 * *period - offset,
+                    // And a polygon of five sides about its centre by a fifth of a turn.
+                    Bell::Disc(disc) if !disc.is_round() => {
+                        DVec2::from_angle(TAU / f64::from(disc.blades())).rotate(offset / size) * size
+                    }
                     _ => -offset,
                 };
                 assert!((shape.value(mirrored, size) - value).abs() < 1e-12, "{bell} at {offset}");
@@ -118,7 +122,7 @@ fn transforms_are_their_hankel_integrals() {
     with_radials(|bell, radial| {
         for z in [0.0, 1e-3, 0.4, 1.0, 5.0, 17.3, 60.0] {
             let samples = 200_000;
-            let step = 1.0 / f64::from(samples);
+            let step = radial.end() / f64::from(samples);
             let integral: f64 = (0..samples)
                 .map(|i| {
                     let r = (f64::from(i) + 0.5) * step;
@@ -294,10 +298,9 @@ fn the_shader_with_every_bell_counts_them_as_the_registry_does() {
         assert_eq!(bell.kind(), kind);
         let include = format!("#include \"{}\"", bell.shape().shader());
         from += any[from..].find(&include).unwrap_or_else(|| panic!("{include} in its place"));
-        let name = bell.to_string().replace('-', "_");
-        for place in [format!("RUN({kind}, {name})"), format!("case {kind}u: return {name}(")] {
-            assert!(any.contains(&place), "{name} is {kind}");
-        }
+        // A file for each, and some bells have two.
+        let name = bell.shape().shader().trim_start_matches("bells/").trim_end_matches(".glsl");
+        assert!(any.contains(&format!("RUN({kind}, {name})")), "{name} is {kind}");
     }
 }
 

@@ -221,8 +221,7 @@ impl Open {
             return Err(ended(&Error::Gl("right after it was made anew".into())));
         }
         let Self { mut app, device, surface, .. } = self;
-        device.abandon();
-        let (device, surface) = surface.rebuild().map_err(|error| ended(&error))?;
+        let (device, surface) = surface.rebuild(&device).map_err(|error| ended(&error))?;
         app.rebuild(&device).map_err(|error| ended(&error))?;
         surface.set_vsync(self.vsync);
         let screen = Screen::of_window(&device, self.screen.size());

@@ -1,7 +1,8 @@
 //! Every evaluator stays within what its plan predicts, and the plan within what was asked.
 
+use glam::DVec2;
 use vglare::Error;
-use vglare::frame::Frame;
+use vglare::frame::{Frame, Window};
 use vglare::gpu::Backend;
 use vglare::plan::{Evaluator, Plan, Request};
 use vglare::reference::direct_at;
@@ -208,4 +209,52 @@ fn what_the_software_renderer_cannot_sum_is_refused() {
         let refusal = renderer.field.probe(frame, &[[0, 0]]).unwrap_err().to_string();
         assert!(refusal.contains("90000 terms"), "{refusal}");
     });
+}
+
+/// A series given by hand, on a lattice of more nodes along an axis than one tile can tell apart.
+fn fine(along: usize, most_nodes: u32) -> Result<(Frame, Plan), Error> {
+    let (mut degree, mut period) = ([3, 3], DVec2::splat(8.0));
+    (degree[along], period[along]) = (70, 5.0);
+    let wide = Frame::full(64, 36);
+    let frame = [wide, Frame::full(12, 24).with_window(Window { x: -4, y: -10, width: 20, height: 44 })][along];
+    let ghosts = scenes::sized(5, 5, wide, 0.2, 0.3);
+    let (degree, period, oversampling) = (Some(degree), Some(period), Some(60.0));
+    let evaluator = Some(Evaluator::Grid);
+    let request = Request { evaluator, degree, period, oversampling, most_nodes, ..Request::new(1e-2) };
+    plan(&ghosts, frame, &request).map(|plan| (frame, plan))
+}
+
+#[test]
+fn a_lattice_finer_than_a_tile_can_index_is_that_of_rows() {
+    for along in [0, 1] {
+        let (frame, grid) = fine(along, 16384).unwrap();
+        let nodes = grid.lattice().unwrap().nodes;
+        assert!(nodes[along] > 4096, "{nodes:?}");
+        let rows = grid.clone().with_series(|series| (series.evaluator, series.lattice) = (Evaluator::Rows, None));
+        let allowed = 2.0 * grid.predicted.single() + grid.predicted.interpolation;
+        let pixels = scenes::every_pixel(frame);
+        on_one_backend(|_, renderer| {
+            let mut values = |plan: &Plan| {
+                renderer.field.set_scene(plan).unwrap();
+                renderer.field.probe(frame, &pixels).unwrap()
+            };
+            let (exact, actual) = (values(&rows), values(&grid));
+            within(allowed, &format!("{nodes:?} nodes"), &pixels, &exact, &actual);
+            // Held as a whole, and drawn from that, it is the same as tile by tile.
+            let settings = Settings::default();
+            let mut tiles: Vec<[f32; 4]> = (0..pixels.len()).map(|i| [i as f32 * 1e-3, 0.5, 2.0, 1.0]).collect();
+            let mut whole = tiles.clone();
+            renderer.composite(frame, &mut tiles, &settings).unwrap();
+            renderer.load(frame, &whole).unwrap();
+            renderer.draw(frame, &settings).unwrap();
+            renderer.fetch(frame, &mut whole).unwrap();
+            assert!(bits(&tiles) == bits(&whole), "{nodes:?} nodes: drawn as a whole and tile by tile");
+        });
+    }
+}
+
+#[test]
+fn a_lattice_beyond_the_devices_textures_is_refused_with_their_side() {
+    let refusal = fine(0, 5000).unwrap_err().to_string();
+    assert!(refusal.contains("beyond the 5000 a side that a texture of this device has"), "{refusal}");
 }

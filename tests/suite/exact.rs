@@ -178,7 +178,9 @@ fn anisotropic_ghosts_in_a_window_of_a_wider_picture_are_kept() {
     let plans = [Evaluator::Grid, Evaluator::Rows, Evaluator::Direct, Evaluator::Local]
         .map(|evaluator| plan(&ghosts, frame, &asked(1e-7, Some(evaluator))).unwrap());
     on_one_backend(|_: Backend, renderer| {
-        plans.iter().for_each(|plan| drop(hold(&plan.evaluator().to_string(), plan, renderer)));
+        for plan in &plans {
+            hold(&plan.evaluator().to_string(), plan, renderer);
+        }
     });
     assert!(plans.iter().all(|plan| plan.layers().iter().all(|layer| !matches!(layer, Layer::Series(series)
         if series.precision == Precision::Single))));

@@ -8,6 +8,7 @@ mod bells;
 mod certificate;
 mod cli;
 mod composite;
+mod discs;
 mod evaluators;
 mod exact;
 mod exchange;

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use crate::job::Planning;
-use crate::plan::{Cost, Evaluator, Group, Plan, Source, Transform};
+use crate::plan::{Cost, Evaluator, Gathering, Group, Plan, Source, Transform};
 use crate::series::moments::Cells;
 
 /// Groups that are told one by one.
@@ -61,8 +61,10 @@ fn groups(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
             Transform::Direct if evaluator == Evaluator::Local => writeln!(out, ", summed where they reach")?,
             Transform::Direct => writeln!(out, ", summed directly")?,
             Transform::Dispatch => writeln!(out, ", degree {n} x {m}")?,
-            Transform::Gather(Cells { counts: [x, y], orders: [p, q] }) => {
-                writeln!(out, ", degree {n} x {m}, gathered in {x} x {y} cells of {p} x {q} moments")?;
+            Transform::Gather(Gathering { cells: Cells { counts: [x, y], orders: [p, q] }, sizes }) => {
+                write!(out, ", degree {n} x {m}, gathered in {x} x {y} cells of {p} x {q} moments")?;
+                let sizes = if sizes == 1 { String::new() } else { format!(" for each of {sizes} sizes") };
+                writeln!(out, "{sizes}")?;
             }
         }
     }

@@ -36,9 +36,10 @@ impl Device {
     /// # Safety
     /// `gl` has the functions of the context that is current on this thread. That context stays so whenever the device, or
     /// anything made on it, is used or dropped; or, where it cannot, as after it was lost, [`Device::abandon`] is called
-    /// before.
+    /// before. And [`Device::settle`] is called whenever the host has drawn in between: pixels are read and written by how
+    /// rows and buffers are said to lie, and memory beside them would be, where the host has said otherwise.
     pub unsafe fn adopt(gl: Arc<glow::Context>) -> Result<Rc<Self>> {
-        let device = Self::new(gl, Backend::Host, Box::new(Hosted))
+        let device = Self::new(gl, Backend::Host, Box::new(Hosted), None)
             .map_err(|reason| Error::NoContext { reasons: vec![format!("the host's context {reason}")] })?;
         device.settle();
         Ok(Rc::new(device))

@@ -13,8 +13,8 @@ fn opening() -> u64 {
 pub fn be_sparing() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     if limits::memory_is_limited() {
-        // It sets a number; it fails for an unknown parameter only.
-        // SAFETY: it takes two numbers and sets one of them.
+        // It fails for an unknown parameter only.
+        // SAFETY: it takes two numbers, and sets the allocator's own under the allocator's lock.
         unsafe { libc::mallopt(libc::M_ARENA_MAX, 1) };
     }
 }

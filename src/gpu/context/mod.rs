@@ -118,6 +118,29 @@ pub struct Device {
     platform: Box<dyn Platform>,
     lost: Cell<bool>,
     abandoned: Cell<bool>,
+    /// Held while the context is to be current; none of a host's, which promises that itself.
+    place: Cell<Option<Place>>,
+}
+
+thread_local! {
+    static TAKEN: Cell<bool> = const { Cell::new(false) };
+}
+
+/// The place of the current context on a thread. One that is opened becomes current, so another before it would not be.
+struct Place(());
+
+impl Place {
+    const REFUSED: &str = "a device is open on this thread already, and would lose its context";
+
+    fn take() -> Result<Self, String> {
+        if TAKEN.replace(true) { Err(Self::REFUSED.into()) } else { Ok(Self(())) }
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        TAKEN.set(false);
+    }
 }
 
 /// What the driver says about itself.
@@ -175,9 +198,13 @@ impl Device {
     ///
     /// # Errors
     /// [`Error::NoContext`] with the reason for each backend that failed and the packages that would mend it;
-    /// [`Error::Memory`] and [`Error::Threads`] where the system's limits leave a driver too little.
+    /// [`Error::Memory`] and [`Error::Threads`] where the system's limits leave a driver too little; [`Error::Gl`] where
+    /// another device that was opened on this thread is still there.
     pub fn open(backends: &[Backend]) -> Result<Rc<Self>> {
         memory::room_to_open()?;
+        if TAKEN.get() {
+            return Err(Error::Gl(Place::REFUSED.into()));
+        }
         let mut reasons = Vec::new();
         for &backend in backends {
             match Self::try_open(backend) {
@@ -195,6 +222,7 @@ impl Device {
     /// # Errors
     /// Why it does not work, in words.
     pub fn try_open(backend: Backend) -> Result<Self, String> {
+        let place = Place::take()?;
         trusting(backend.library(), || {
             let (gl, platform): (glow::Context, Box<dyn Platform>) = match backend {
                 Backend::Egl => egl::open()?,
@@ -202,12 +230,17 @@ impl Device {
                 Backend::Window => return Err("is not opened without a window".into()),
                 Backend::Host => return Err("is the program's own, to be adopted".into()),
             };
-            Self::new(shared(gl), backend, platform)
+            Self::new(shared(gl), backend, platform, Some(place))
         })
     }
 
     /// The device of a context that is current.
-    fn new(gl: Arc<glow::Context>, backend: Backend, platform: Box<dyn Platform>) -> Result<Self, String> {
+    fn new(
+        gl: Arc<glow::Context>,
+        backend: Backend,
+        platform: Box<dyn Platform>,
+        place: Option<Place>,
+    ) -> Result<Self, String> {
         let version = gl.version();
         let below = (version.major, version.minor) < (u32::from(REQUIRED.0), u32::from(REQUIRED.1));
         if below || version.is_embedded {
@@ -215,11 +248,16 @@ impl Device {
             return Err(format!("gives {kind} {}.{} and OpenGL 4.3 is needed", version.major, version.minor));
         }
         let info = describe(&gl, backend, platform.route());
-        Ok(Self { gl, info, platform, lost: Cell::default(), abandoned: Cell::default() })
+        let place = Cell::new(place);
+        Ok(Self { gl, info, platform, lost: Cell::default(), abandoned: Cell::default(), place })
     }
 
     /// The GL functions.
+    ///
+    /// # Panics
+    /// Where the device was abandoned: its context may not be current any more.
     pub(in crate::gpu) fn gl(&self) -> &glow::Context {
+        assert!(!self.abandoned.get(), "a device is used that was abandoned");
         &self.gl
     }
 
@@ -232,7 +270,7 @@ impl Device {
     /// on it can be used.
     pub fn is_lost(&self) -> bool {
         // A driver that is ready again says so, and the context is no better for it.
-        self.lost.set(self.lost.get() || self.platform.is_lost());
+        self.lost.set(self.lost.get() || self.abandoned.get() || self.platform.is_lost());
         self.lost.get()
     }
 
@@ -240,6 +278,7 @@ impl Device {
     /// is not freed one by one.
     pub fn abandon(&self) {
         self.abandoned.set(true);
+        self.place.take();
     }
 
     /// The GL functions, for a painter that keeps them.
@@ -258,7 +297,7 @@ impl Device {
     /// [`Error::Gl`], which names `work`.
     pub fn check(&self, work: &str) -> Result<()> {
         // SAFETY: the device keeps its context current on this thread.
-        let name = match unsafe { self.gl.get_error() } {
+        let name = match unsafe { self.gl().get_error() } {
             glow::NO_ERROR => return Ok(()),
             glow::OUT_OF_MEMORY => "out of memory".to_owned(),
             glow::INVALID_OPERATION => "invalid operation".to_owned(),
@@ -271,7 +310,7 @@ impl Device {
     /// Waits until the GL has done all that it was asked to.
     pub fn finish(&self) {
         // SAFETY: the device keeps its context current on this thread.
-        unsafe { self.gl.finish() }
+        unsafe { self.gl().finish() }
     }
 }
 
@@ -295,7 +334,7 @@ fn describe(gl: &glow::Context, backend: Backend, route: String) -> Info {
     // SAFETY: the context is current, and the name is one of OpenGL 4.3.
     let indexed = |name, index| unsafe { gl.get_parameter_indexed_i32(name, index) }.max(0) as u32;
     let mut viewport = [0; 2];
-    // SAFETY: the context is current, and the parameter has two numbers.
+    // SAFETY: the context is current, and the parameter has two numbers, as the array.
     unsafe { gl.get_parameter_i32_slice(glow::MAX_VIEWPORT_DIMS, &mut viewport) };
     let renderer = text(glow::RENDERER);
     let software = ["llvmpipe", "softpipe", "swrast", "SwiftShader"].iter().any(|name| renderer.contains(name));

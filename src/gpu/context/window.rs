@@ -13,12 +13,12 @@ use glutin::display::{Display as GlDisplay, DisplayApiPreference, GetGlDisplay a
 use glutin::prelude::{NotCurrentGlContext as _, PossiblyCurrentGlContext as _};
 use glutin::surface::{GlSurface as _, SurfaceAttributesBuilder, SwapInterval, WindowSurface};
 use libloading::Library;
-use winit::event_loop::{ActiveEventLoop, EventLoop};
+use winit::event_loop::{ActiveEventLoop, EventLoop, OwnedDisplayHandle};
 use winit::platform::x11::register_xlib_error_hook;
 use winit::raw_window_handle::{HasDisplayHandle as _, HasWindowHandle as _};
 use winit::window::{Window, WindowAttributes};
 
-use super::{Backend, Device, Platform, REQUIRED, memory, trusting};
+use super::{Backend, Device, Place, Platform, REQUIRED, memory, trusting};
 use crate::{Error, Result};
 
 /// What winit loads at run time on X11 and would panic without.
@@ -59,6 +59,8 @@ pub struct Display {
     config: Config,
     context: NotCurrentContext,
     route: &'static str,
+    /// Goes last: all the others speak through it.
+    connection: OwnedDisplayHandle,
 }
 
 impl Display {
@@ -69,15 +71,16 @@ impl Display {
     pub fn open<T>(event_loop: &EventLoop<T>) -> Result<Self> {
         memory::room_to_open()?;
         // GLX first: on X11 drivers resize its windows more smoothly. Wayland has EGL only.
+        let connection = event_loop.owned_display_handle();
         let handle =
-            event_loop.display_handle().map_err(|error| Error::NoDisplay { reason: error.to_string() })?.as_raw();
+            connection.display_handle().map_err(|error| Error::NoDisplay { reason: error.to_string() })?.as_raw();
         let glx = DisplayApiPreference::Glx(Box::new(register_xlib_error_hook));
         let mut reasons = Vec::new();
         for (name, api) in [("GLX", glx), ("EGL", DisplayApiPreference::Egl)] {
             let opened = trusting(Backend::Window.library(), || {
-                // SAFETY: the handle is that of the event loop, which outlives every display of its.
+                // SAFETY: the handle is that of the connection, which is kept with all that comes of the display.
                 let display = unsafe { GlDisplay::new(handle, api) }.map_err(|error| error.to_string())?;
-                Self::try_open(&display)
+                Self::try_open(&display, connection.clone())
             });
             match opened {
                 Ok(display) => return Ok(display),
@@ -88,7 +91,7 @@ impl Display {
         Err(Error::NoContext { reasons })
     }
 
-    fn try_open(display: &GlDisplay) -> Result<Self, String> {
+    fn try_open(display: &GlDisplay, connection: OwnedDisplayHandle) -> Result<Self, String> {
         let template = ConfigTemplateBuilder::new()
             .with_api(Api::OPENGL)
             .with_depth_size(0)
@@ -106,7 +109,7 @@ impl Display {
             GlDisplay::Glx(_) => "GLX window",
         };
         let context = new_context(&config)?;
-        Ok(Self { config, context, route })
+        Ok(Self { config, context, route, connection })
     }
 
     /// Opens a window and makes its context current on this thread.
@@ -116,11 +119,11 @@ impl Display {
     pub fn window(self, event_loop: &ActiveEventLoop, attributes: WindowAttributes) -> Result<(Rc<Device>, Surface)> {
         let window = glutin_winit::finalize_window(event_loop, attributes, &self.config)
             .map_err(|error| Error::NoDisplay { reason: error.to_string() })?;
-        let Self { config, context, route } = self;
+        let Self { config, context, route, connection } = self;
         let refused = |reason: String| Error::NoContext { reasons: vec![format!("{route}: {reason}")] };
         let surface = new_surface(&config, &window).map_err(refused)?;
-        let (device, context) = current(&config, context, &surface, route).map_err(refused)?;
-        Ok((device, Surface { surface, context, config, route, window }))
+        let (device, context) = current(&config, context, &surface, route, &connection).map_err(refused)?;
+        Ok((device, Surface { surface, context, config, route, window, connection }))
     }
 }
 
@@ -154,14 +157,17 @@ fn current(
     context: NotCurrentContext,
     surface: &glutin::surface::Surface<WindowSurface>,
     route: &'static str,
+    connection: &OwnedDisplayHandle,
 ) -> Result<(Rc<Device>, Rc<PossiblyCurrentContext>), String> {
+    let place = Place::take()?;
     let context = Rc::new(context.make_current(surface).map_err(|error| error.to_string())?);
     let display = config.display();
     // SAFETY: the context is current, and its own display names its functions.
     let gl = unsafe { glow::Context::from_loader_function_cstr(|name| display.get_proc_address(name)) };
     let reset_status = reset_status(&gl, &display);
-    let platform = OnScreen { _context: context.clone(), route, reset_status };
-    Ok((Rc::new(Device::new(super::shared(gl), Backend::Window, Box::new(platform))?), context))
+    let platform = OnScreen { _context: context.clone(), route, reset_status, _connection: connection.clone() };
+    let device = Device::new(super::shared(gl), Backend::Window, Box::new(platform), Some(place))?;
+    Ok((Rc::new(device), context))
 }
 
 type ResetStatus = unsafe extern "system" fn() -> u32;
@@ -178,7 +184,6 @@ fn reset_status(gl: &glow::Context, display: &GlDisplay) -> Option<ResetStatus> 
     } else {
         return None;
     };
-    // The signature is that of the specification.
     // SAFETY: an address or null becomes a function or none, and its signature is that of the specification.
     unsafe { std::mem::transmute::<*const std::ffi::c_void, Option<ResetStatus>>(display.get_proc_address(name)) }
 }
@@ -187,6 +192,8 @@ struct OnScreen {
     _context: Rc<PossiblyCurrentContext>,
     route: &'static str,
     reset_status: Option<ResetStatus>,
+    /// Goes last: the context's display speaks through it.
+    _connection: OwnedDisplayHandle,
 }
 
 impl Platform for OnScreen {
@@ -195,19 +202,21 @@ impl Platform for OnScreen {
     }
 
     fn is_lost(&self) -> bool {
-        // SAFETY: the function is the context's own, which is current, and takes nothing.
+        // SAFETY: the function is the context's own, which is current unless the device was abandoned, and then nobody asks;
+        // it takes nothing.
         self.reset_status.is_some_and(|ask| unsafe { ask() } != glow::NO_ERROR)
     }
 }
 
 /// A window and what is drawn into it.
 pub struct Surface {
-    // The window goes last: fields drop in order of declaration.
+    // The window goes late, and the connection last: fields drop in order of declaration.
     surface: glutin::surface::Surface<WindowSurface>,
     context: Rc<PossiblyCurrentContext>,
     config: Config,
     route: &'static str,
     window: Window,
+    connection: OwnedDisplayHandle,
 }
 
 impl Surface {
@@ -216,13 +225,14 @@ impl Surface {
         &self.window
     }
 
-    /// Puts a new context and surface in the place of ones that were lost, on the same window. The device before has to
-    /// be abandoned.
+    /// Puts a new context and surface in the place of ones that were lost, on the same window. The device before is
+    /// abandoned.
     ///
     /// # Errors
     /// [`Error::NoContext`] where the driver refuses for some seconds; the window is closed then.
-    pub fn rebuild(self) -> Result<(Rc<Device>, Self)> {
-        let Self { surface, context, config, route, window } = self;
+    pub fn rebuild(self, before: &Device) -> Result<(Rc<Device>, Self)> {
+        before.abandon();
+        let Self { surface, context, config, route, window, connection } = self;
         // A context that is lost may refuse even this, and is not current then either.
         let _ = context.make_not_current_in_place();
         // A window has one surface at a time.
@@ -232,11 +242,12 @@ impl Surface {
         loop {
             let made = new_context(&config).and_then(|context| {
                 let surface = new_surface(&config, &window)?;
-                current(&config, context, &surface, route).map(|(device, context)| (device, context, surface))
+                current(&config, context, &surface, route, &connection)
+                    .map(|(device, context)| (device, context, surface))
             });
             match made {
                 Ok((device, context, surface)) => {
-                    return Ok((device, Self { surface, context, config, route, window }));
+                    return Ok((device, Self { surface, context, config, route, window, connection }));
                 }
                 // A card that is being reset takes a while.
                 Err(_) if attempts < ATTEMPTS => {

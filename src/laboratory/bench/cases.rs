@@ -2,16 +2,12 @@
 
 use std::cell::RefCell;
 
-use glam::DVec2;
-
 use super::report::{Report, Table, Target};
 use super::scenes;
 use super::stage::{Arm, Stage};
 use crate::Result;
-use crate::frame::Frame;
 use crate::measure::interleave;
-use crate::plan::{Evaluator, Lattice, Plan, Request, Transform, plan};
-use crate::problem::Problem;
+use crate::plan::{Evaluator, Lattice, Plan, Transform};
 use crate::scene::Ghost;
 
 /// The bar of the default path: a spectrum and a frame, in copies.
@@ -20,7 +16,8 @@ const FRAME: f64 = 4.0;
 const ROWS: f64 = 5.0;
 
 const TOLERANCE: f64 = 1e-3;
-const DEGREE: [u32; 2] = [10, 10];
+/// Of series that are given by hand.
+pub(super) const DEGREE: [u32; 2] = [10, 10];
 
 /// A frame by `grid` at the usual tolerance, against a copy.
 pub(super) fn default_path(stage: &Stage, report: &mut Report) -> Result<()> {
@@ -29,8 +26,7 @@ pub(super) fn default_path(stage: &Stage, report: &mut Report) -> Result<()> {
 }
 
 fn grid(stage: &Stage, report: &mut Report, ghosts: &[Ghost]) -> Result<()> {
-    let request = Request { evaluator: Some(Evaluator::Grid), ..Request::new(TOLERANCE) };
-    let plan = plan(&Problem::new(ghosts, stage.frame), &request)?;
+    let plan = scenes::by(Evaluator::Grid, ghosts, stage.frame, TOLERANCE)?;
     let mut actor = stage.actor(&plan)?;
 
     let shared = RefCell::new(&mut actor);
@@ -61,7 +57,7 @@ fn grid(stage: &Stage, report: &mut Report, ghosts: &[Ghost]) -> Result<()> {
 /// `rows` against `series`, which does the same sum without taking it apart.
 pub(super) fn rows_and_series(stage: &Stage, report: &mut Report) -> Result<()> {
     let ghosts = scenes::scattered(45, 0.3, stage.frame);
-    let actor = |evaluator| stage.actor(&by_hand(&ghosts, stage.frame, evaluator)?);
+    let actor = |evaluator| stage.actor(&scenes::by_hand(evaluator, &ghosts, stage.frame, DEGREE)?);
     let (mut rows, mut series) = (actor(Evaluator::Rows)?, actor(Evaluator::Series)?);
     let arms: [Arm<'_>; 2] = [&mut || rows.frame(), &mut || series.frame()];
     let [rows, series] = interleave(stage.rounds, arms)?;
@@ -77,13 +73,10 @@ pub(super) fn rows_and_series(stage: &Stage, report: &mut Report) -> Result<()> 
 /// Each evaluator pass by pass: `series` at a degree by hand, because at a tolerance it takes minutes on a CPU.
 pub(super) fn passes(stage: &Stage, report: &mut Report, quick: bool) -> Result<()> {
     let lens = scenes::default_lens()?;
-    let at_tolerance = |evaluator| {
-        let request = Request { evaluator: Some(evaluator), ..Request::new(TOLERANCE) };
-        plan(&Problem::new(lens.as_slice(), stage.frame), &request)
-    };
+    let at_tolerance = |evaluator| scenes::by(evaluator, lens.as_slice(), stage.frame, TOLERANCE);
     let by_hand = |evaluator| {
         let ghosts = scenes::scattered(lens.len(), 0.3, stage.frame);
-        by_hand(&ghosts, stage.frame, evaluator)
+        scenes::by_hand(evaluator, &ghosts, stage.frame, DEGREE)
     };
     let mut cases = vec![at_tolerance(Evaluator::Direct)?, at_tolerance(Evaluator::Rows)?, by_hand(Evaluator::Rows)?];
     if !quick {
@@ -98,15 +91,6 @@ pub(super) fn passes(stage: &Stage, report: &mut Report, quick: bool) -> Result<
         report.table(table);
     }
     Ok(())
-}
-
-/// A plan of [`DEGREE`].
-pub(super) fn by_hand(ghosts: &[Ghost], frame: Frame, evaluator: Evaluator) -> Result<Plan> {
-    let aspect = f64::from(frame.width) / f64::from(frame.height);
-    let period = Some(DVec2::new(2.0 * aspect + 2.0, 4.0));
-    // The degree decides the error; the tolerance, how finely `grid` interpolates.
-    let request = Request { period, degree: Some(DEGREE), evaluator: Some(evaluator), ..Request::new(1e-2) };
-    plan(&Problem::new(ghosts, frame), &request)
 }
 
 pub(super) fn described(plan: &Plan) -> String {

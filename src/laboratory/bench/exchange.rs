@@ -5,14 +5,12 @@ use super::scenes;
 use super::stage::{Arm, Stage};
 use crate::Result;
 use crate::measure::interleave;
-use crate::plan::{Evaluator, Request, plan};
-use crate::problem::Problem;
+use crate::plan::Evaluator;
 use crate::renderer::Settings;
 
 /// Upload, read-back and a whole frame from photo to photo, each in both ways.
 pub(super) fn ways(stage: &Stage, report: &mut Report) -> Result<()> {
-    let request = Request { evaluator: Some(Evaluator::Grid), ..Request::new(1e-3) };
-    let plan = plan(&Problem::new(scenes::default_lens()?, stage.frame), &request)?;
+    let plan = scenes::by(Evaluator::Grid, scenes::default_lens()?, stage.frame, 1e-3)?;
     let mut table = Table::new("To the device and back", "straight")
         .note("Pixel buffers cost the CPU one more copy; while the device fills or empties them, it need not wait.");
     let actor = |buffers| {

@@ -1,15 +1,10 @@
 //! A field of Gaussians of one size, step by step: what benches/peers compares with other programs.
 
-use std::cell::RefCell;
-use std::hint::black_box;
-
 use super::cases::described;
 use super::report::{Report, Table};
 use super::scenes;
-use super::stage::{Arm, Stage};
+use super::stage::{Actor, Stage, Steps};
 use crate::Result;
-use crate::certificate::Certificate;
-use crate::measure::interleave;
 use crate::plan::plan;
 use crate::problem::Problem;
 
@@ -19,18 +14,8 @@ pub(super) fn of_one_size(stage: &Stage, report: &mut Report, count: usize, sigm
     let problem = Problem::new(scenes::alike(count, sigma * width, stage.frame), stage.frame);
     let request = stage.request(tolerance);
     let planned = plan(&problem, &request)?;
-    let mut actor = stage.actor(&planned)?;
-    let certificate = Certificate::measure(&mut actor.renderer().field, &planned)?;
-
-    let shared = RefCell::new(&mut actor);
-    let arms: [Arm<'_>; 5] = [
-        &mut || shared.borrow_mut().copy(),
-        &mut || plan(&problem, &request).map(|plan| drop(black_box(plan))),
-        &mut || shared.borrow_mut().spectrum(),
-        &mut || shared.borrow_mut().frame(),
-        &mut || shared.borrow_mut().everything(),
-    ];
-    let [copy, planning, spectrum, field, together] = interleave(stage.rounds, arms)?;
+    let Steps { certificate, copy, plan, spectrum, drawing: field, together } =
+        stage.steps(&planned, &request, Actor::frame)?;
     let note = format!(
         "By {}. {} Off by {:.1e}, {:.1e} predicted.",
         planned.evaluator(),
@@ -41,7 +26,7 @@ pub(super) fn of_one_size(stage: &Stage, report: &mut Report, count: usize, sigm
     let title = format!("{count} Gaussians, sigma {sigma} of the width, tolerance {tolerance:e}");
     let mut table = Table::new(title, "copy").note(note);
     table.row("copy", &copy, None);
-    for (what, samples) in [("plan", &planning), ("spectrum", &spectrum), ("field", &field), ("together", &together)] {
+    for (what, samples) in [("plan", &plan), ("spectrum", &spectrum), ("field", &field), ("together", &together)] {
         table.row(what, samples, Some(samples.over(&copy)));
     }
     report.table(table);

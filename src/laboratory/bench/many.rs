@@ -1,14 +1,13 @@
 //! Few ghosts against many: only the spectrum and `direct` may take longer.
 
-use super::cases::by_hand;
+use super::cases::DEGREE;
 use super::report::{Report, Table, Target};
 use super::scenes;
 use super::stage::{Arm, Stage};
 use crate::Result;
 use crate::frame::{Frame, Window};
 use crate::measure::{Samples, interleave};
-use crate::plan::{Evaluator, Request, plan};
-use crate::problem::Problem;
+use crate::plan::Evaluator;
 use crate::scene::Ghost;
 
 const FEW: usize = 5;
@@ -26,7 +25,8 @@ pub(super) fn ghosts(stage: &Stage, report: &mut Report, quick: bool) -> Result<
         if quick && evaluator == Evaluator::Series {
             continue;
         }
-        let [few, many] = [by_hand(&few, stage.frame, evaluator)?, by_hand(&many, stage.frame, evaluator)?];
+        let by_hand = |ghosts: &[Ghost]| scenes::by_hand(evaluator, ghosts, stage.frame, DEGREE);
+        let [few, many] = [by_hand(&few)?, by_hand(&many)?];
         // The same work, whatever the plan thinks of its error.
         let few = few.with_series(|series| series.lattice = many.lattice().copied());
         let (mut once, mut often) = (stage.actor(&few)?, stage.actor(&many)?);
@@ -55,8 +55,7 @@ fn pair(stage: &Stage, table: &mut Table, what: &str, arms: [Arm<'_>; 2]) -> Res
 
 fn direct(stage: &Stage, table: &mut Table, few: &[Ghost], many: &[Ghost]) -> Result<()> {
     let small = middle(stage.frame, SMALL);
-    let request = Request { evaluator: Some(Evaluator::Direct), ..Request::new(1e-3) };
-    let by_direct = |ghosts: &[Ghost], frame| plan(&Problem::new(ghosts, frame), &request);
+    let by_direct = |ghosts: &[Ghost], frame| scenes::by(Evaluator::Direct, ghosts, frame, 1e-3);
     let mut once = stage.actor(&by_direct(few, stage.frame)?)?;
     let mut often = stage.actor(&by_direct(many, small)?)?;
     let [once, often] = interleave(stage.rounds, [&mut || once.frame(), &mut || often.frame()] as [Arm<'_>; 2])?;

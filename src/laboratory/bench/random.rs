@@ -5,7 +5,7 @@ use glam::DVec2;
 use crate::chance::Chance;
 use crate::frame::Frame;
 use crate::scene::Ghost;
-use crate::series::{Bell, SineGaussian, VonMises};
+use crate::series::Bell;
 
 /// A picture with ghosts, and a tolerance.
 pub(super) struct Random {
@@ -67,15 +67,7 @@ fn frame(chance: &mut Chance, size: Option<[u32; 2]>) -> Frame {
 /// The bells of a scene. Periodic ones share one period, somewhat larger than the picture.
 fn bells(chance: &mut Chance) -> Vec<Bell> {
     let period = DVec2::new(chance.between(5.0, 9.0), chance.between(3.0, 6.0));
-    let mut all = Bell::examples();
-    for bell in &mut all {
-        match bell {
-            Bell::VonMises(VonMises { period: own }) | Bell::SineGaussian(SineGaussian { period: own, .. }) => {
-                *own = period;
-            }
-            _ => {}
-        }
-    }
+    let mut all: Vec<Bell> = Bell::examples().into_iter().map(|bell| bell.in_period(period)).collect();
     match below(chance, 3) {
         0 => vec![Bell::Gaussian],
         1 => vec![all.swap_remove(1 + below(chance, all.len() - 1))],

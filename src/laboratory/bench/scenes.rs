@@ -1,9 +1,13 @@
 //! What the bench lets glare: always the same.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 
 use crate::Result;
 use crate::frame::Frame;
+use crate::plan::{Evaluator, Plan, Request, plan};
+use crate::problem::Problem;
 use crate::scene::presets::{self, DEFAULT_PRESET};
 use crate::scene::{Ghost, Light, ghosts};
 use crate::series::Bell;
@@ -22,7 +26,7 @@ pub(super) fn default_lens() -> Result<Vec<Ghost>> {
 
 /// `count` Gaussians spread evenly over the picture and a little beyond, of `smallest` to twice that size.
 pub(in crate::laboratory) fn scattered(count: usize, smallest: f64, frame: Frame) -> Vec<Ghost> {
-    let aspect = f64::from(frame.width) / f64::from(frame.height);
+    let aspect = frame.half_width();
     // Multiples of irrational numbers, modulo 1: as even as a grid, and without its rows.
     let part = |k: usize, irrational: f64| (0.5 + k as f64 * irrational).fract();
     let one = |k: usize| Ghost {
@@ -37,6 +41,39 @@ pub(in crate::laboratory) fn scattered(count: usize, smallest: f64, frame: Frame
 /// A round Gaussian.
 pub(super) fn gaussian(center: DVec2, size: f64, radiance: [f64; 3]) -> Ghost {
     Ghost { bell: Bell::Gaussian, center, size: DVec2::splat(size), radiance }
+}
+
+/// The plan of one evaluator for ghosts, at a tolerance, by the built-in cost model.
+pub(in crate::laboratory) fn by(
+    evaluator: Evaluator,
+    ghosts: impl Into<Arc<[Ghost]>>,
+    frame: Frame,
+    tolerance: f64,
+) -> Result<Plan> {
+    plan(&Problem::new(ghosts, frame), &Request { evaluator: Some(evaluator), ..Request::new(tolerance) })
+}
+
+/// The plan of a series of one evaluator in a given degree. That decides the error; the tolerance, how finely `grid`
+/// interpolates.
+pub(in crate::laboratory) fn by_hand(
+    evaluator: Evaluator,
+    ghosts: &[Ghost],
+    frame: Frame,
+    degree: [u32; 2],
+) -> Result<Plan> {
+    let period = Some(DVec2::new(2.0 * frame.half_width() + 2.0, 4.0));
+    let request = Request { period, degree: Some(degree), evaluator: Some(evaluator), ..Request::new(1e-2) };
+    plan(&Problem::new(ghosts, frame), &request)
+}
+
+/// `count` Gaussians from one size to another, each as likely, spread evenly over the picture.
+pub(super) fn between(count: usize, [smallest, largest]: [f64; 2], frame: Frame) -> Vec<Ghost> {
+    // What `scattered` has between its smallest size and twice that.
+    let sized = |ghost: Ghost| {
+        let size = smallest + (largest - smallest) * (ghost.size - 1.0);
+        Ghost { center: ghost.center / 1.1, size, ..ghost }
+    };
+    scattered(count, 1.0, frame).into_iter().map(sized).collect()
 }
 
 /// `count` Gaussians of one size, spread evenly over the picture; benches/peers/peers.py has the same.

@@ -1,13 +1,16 @@
 //! What every case needs: the device, the picture, and how to run and time frames.
 
+use std::cell::RefCell;
+use std::hint::black_box;
 use std::rc::Rc;
 
-use crate::Result;
+use crate::certificate::Certificate;
 use crate::frame::Frame;
 use crate::gpu::{Device, PassTime};
-use crate::measure::{Rounds, Samples};
-use crate::plan::{CostModel, Plan, Request};
+use crate::measure::{Rounds, Samples, interleave};
+use crate::plan::{CostModel, Plan, Request, plan};
 use crate::renderer::{Picture, Settings};
+use crate::{Result, job};
 
 /// One of the things that are timed in turns.
 pub(super) type Arm<'a> = &'a mut dyn FnMut() -> Result<()>;
@@ -26,6 +29,16 @@ pub(super) struct Actor {
     renderer: Picture,
     trusted: bool,
     plan: Plan,
+}
+
+/// A plan, step by step, beside a copy of the picture.
+pub(super) struct Steps {
+    pub certificate: Certificate,
+    pub copy: Samples,
+    pub plan: Samples,
+    pub spectrum: Samples,
+    pub drawing: Samples,
+    pub together: Samples,
 }
 
 /// One pass over the rounds.
@@ -51,9 +64,7 @@ impl Stage {
 
     /// What is asked of a plan whose choices are to be measured here.
     pub fn request(&self, tolerance: f64) -> Request {
-        let info = self.device.info();
-        let (loop_rounds, doubles) = (info.loop_rounds().unwrap_or(usize::MAX), info.limits.doubles);
-        Request { loop_rounds, doubles, cost_model: self.cost_model, ..Request::new(tolerance) }
+        job::request(Some(self.device.info()), tolerance, self.cost_model)
     }
 
     /// Whether the device's timer tells the truth. Mesa's software renderer leaves out what compute shaders do.
@@ -74,6 +85,22 @@ impl Stage {
         renderer.load(frame, &vec![[0.5; 4]; frame.window.pixels()])?;
         renderer.field.set_scene(plan)?;
         Ok(Actor { renderer, trusted: self.trusted(), plan: plan.clone() })
+    }
+
+    /// Times what a plan takes, step by step, in turns; `drawing` is the one between the spectrum and all together.
+    pub fn steps(&self, planned: &Plan, request: &Request, drawing: fn(&mut Actor) -> Result<()>) -> Result<Steps> {
+        let mut actor = self.actor(planned)?;
+        let certificate = Certificate::measure(&mut actor.renderer().field, planned)?;
+        let shared = RefCell::new(&mut actor);
+        let arms: [Arm<'_>; 5] = [
+            &mut || shared.borrow_mut().copy(),
+            &mut || plan(planned.problem(), request).map(|plan| drop(black_box(plan))),
+            &mut || shared.borrow_mut().spectrum(),
+            &mut || drawing(&mut shared.borrow_mut()),
+            &mut || shared.borrow_mut().everything(),
+        ];
+        let [copy, plan, spectrum, drawing, together] = interleave(self.rounds, arms)?;
+        Ok(Steps { certificate, copy, plan, spectrum, drawing, together })
     }
 }
 

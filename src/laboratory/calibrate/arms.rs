@@ -8,10 +8,9 @@ use glam::DVec2;
 use crate::Result;
 use crate::frame::Frame;
 use crate::gpu::Device;
-use crate::laboratory::bench::scenes::scattered;
+use crate::laboratory::bench::scenes::{by, by_hand, scattered};
 use crate::measure::Rounds;
-use crate::plan::{DOUBLE_ORDER, Evaluator, Lattice, Plan, Precision, Request, Transform, plan};
-use crate::problem::Problem;
+use crate::plan::{DOUBLE_ORDER, Evaluator, Gathering, Lattice, Plan, Precision, Transform};
 use crate::renderer::{Picture, Settings};
 use crate::scene::Ghost;
 use crate::series::CUBIC;
@@ -107,7 +106,9 @@ impl Arms {
         let arm = |work, picture, count, plan: &dyn Fn(&[Ghost], Frame) -> Result<Plan>| {
             sized(work, picture, count, 0.3, plan)
         };
-        let few = |evaluator, degree| move |ghosts: &[Ghost], frame| by_hand(ghosts, frame, evaluator, degree);
+        let few = |evaluator, degree| move |ghosts: &[Ghost], frame| by_hand(evaluator, ghosts, frame, degree);
+        let direct = |ghosts: &[Ghost], frame| by(Evaluator::Direct, ghosts, frame, 1e-3);
+        let local = |ghosts: &[Ghost], frame| by(Evaluator::Local, ghosts, frame, 1e-2);
         let (series, rows) =
             (|degree| few(Evaluator::Series, [degree; 2]), |degree: [u32; 2]| few(Evaluator::Rows, degree));
         let all: Result<Vec<Arm>> = [
@@ -193,28 +194,8 @@ impl Arms {
     }
 }
 
-/// The direct sum of them all.
-fn direct(ghosts: &[Ghost], frame: Frame) -> Result<Plan> {
-    plan(&Problem::new(ghosts, frame), &Request { evaluator: Some(Evaluator::Direct), ..Request::new(1e-3) })
-}
-
 /// Small ghosts: of a pixel or two.
 const SMALL: f64 = 0.01;
-
-/// Each where it reaches.
-fn local(ghosts: &[Ghost], frame: Frame) -> Result<Plan> {
-    plan(&Problem::new(ghosts, frame), &Request { evaluator: Some(Evaluator::Local), ..Request::new(1e-2) })
-}
-
-/// A series of a given degree, whose error does not matter here.
-fn by_hand(ghosts: &[Ghost], frame: Frame, evaluator: Evaluator, degree: [u32; 2]) -> Result<Plan> {
-    let aspect = f64::from(frame.width) / f64::from(frame.height);
-    let period = Some(DVec2::new(2.0 * aspect + 2.0, 4.0));
-    plan(
-        &Problem::new(ghosts, frame),
-        &Request { period, degree: Some(degree), evaluator: Some(evaluator), ..Request::new(1e-2) },
-    )
-}
 
 /// The same plan, its series in 64-bit floats.
 fn in_doubles(plan: Plan) -> Plan {
@@ -228,10 +209,10 @@ fn in_doubles(plan: Plan) -> Plan {
 
 /// A few modes, gathered from cells of many moments. Sizes differ, and the error does not matter here.
 fn gathered(ghosts: &[Ghost], frame: Frame) -> Result<Plan> {
-    let plan = by_hand(ghosts, frame, Evaluator::Rows, [2, 2])?;
+    let plan = by_hand(Evaluator::Rows, ghosts, frame, [2, 2])?;
     Ok(plan.with_series(|series| {
         for group in &mut series.groups {
-            group.transform = Transform::Gather(CELLS);
+            group.transform = Transform::Gather(Gathering { cells: CELLS, sizes: 1 });
         }
     }))
 }
@@ -248,7 +229,7 @@ fn grid(ghosts: &[Ghost], frame: Frame, columns: u32) -> Result<Plan> {
     const LINES: u32 = 12;
     // Beside the cells that the picture covers, a B-spline needs three nodes more, and the last pixel one.
     const BEYOND: u32 = 4;
-    let plan = by_hand(ghosts, frame, Evaluator::Grid, [2, 2])?;
+    let plan = by_hand(Evaluator::Grid, ghosts, frame, [2, 2])?;
     let (low, high) = frame.bounds();
     let cells = [columns, LINES].map(|nodes| f64::from(nodes - BEYOND) + 0.5);
     let step = (high - low) / DVec2::from(cells);

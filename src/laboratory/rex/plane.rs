@@ -126,6 +126,7 @@ impl Scene {
             ghosts: self.centers.len(),
             smallest: self.size * canvas.scale,
             largest: self.size * canvas.scale,
+            proportional: true,
             weight: self.centers.len() as f64,
             degree: self.degree,
             transform: Transform::Dispatch,

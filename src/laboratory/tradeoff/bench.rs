@@ -3,12 +3,12 @@
 use std::rc::Rc;
 use std::time::Instant;
 
-use crate::Result;
 use crate::frame::{Frame, Window};
 use crate::gpu::Device;
 use crate::measure::{Rounds, Samples, in_turns};
 use crate::plan::{CostModel, Evaluator, Plan, Request};
 use crate::renderer::{Picture, Settings};
+use crate::{Result, job};
 
 /// The part of a picture, one over this many rows, that a first try of a slow evaluator draws.
 const TRY: u32 = 64;
@@ -65,14 +65,7 @@ impl Bench {
 
     /// What to ask of a plan for this device.
     pub fn request(&self, tolerance: f64) -> Request {
-        let info = self.device.info();
-        Request {
-            doubles: info.limits.doubles,
-            loop_rounds: info.loop_rounds().unwrap_or(usize::MAX),
-            most_terms: (info.limits.storage_block / 48) as usize,
-            cost_model: self.cost_model,
-            ..Request::new(tolerance)
-        }
+        job::request(Some(self.device.info()), tolerance, self.cost_model)
     }
 
     /// Times the arms in turns; `tick` hears how much of it is done, from 0 to 1.

@@ -19,10 +19,12 @@ use crate::problem::Problem;
 use crate::scene::Ghost;
 use crate::series::Bell;
 
-/// The sides of a ghost's cells are at most so many of its sizes, of few ghosts and of many, and of where it ends.
-const OF_SIZE: [f64; 2] = [1.5, 3.0];
-const FEW: usize = 1000;
-const OF_END: f64 = 0.5;
+/// The sides of a ghost's cells are at most so many of its sizes, or of where it ends: from the finest to the coarsest. They are
+/// as fine as so many cells of all ghosts together allow, of a ghost that reaches as far as most do: bounds are the closer.
+const OF_SIZE: [f64; 2] = [0.45, 3.0];
+const OF_END: [f64; 2] = [0.1, 0.5];
+const CELLS: f64 = 4e5;
+const EXTENT: f64 = 15.0;
 
 /// A ghost has at most so many cells, and so has the window.
 const MOST_OF_ONE: usize = 1024;
@@ -67,7 +69,7 @@ pub(super) struct Map<'a> {
     /// The bells, and which of them each group has.
     bells: Vec<Slopes<'a>>,
     of_group: Vec<usize>,
-    kept: usize,
+    pub kept: usize,
 }
 
 /// What may meet in a cell.
@@ -103,17 +105,19 @@ impl<'a> Map<'a> {
         Self { problem, weighed, groups, bells, of_group, kept }
     }
 
-    /// The worst where each ghost is left out below a level.
-    pub fn worst(&self, level: f64) -> Worst {
+    /// The worst where each ghost is left out below a level; or an estimate of it by each `step`-th ghost of a group.
+    pub fn worst(&self, level: f64, step: usize) -> Worst {
         let chunk = if self.kept > MANY { self.kept.div_ceil(CHUNKS) } else { self.kept.max(1) };
         let starts: Vec<usize> = (0..self.kept).step_by(chunk).collect();
-        let parts: Vec<Part> = starts.into_par_iter().map(|start| self.part(start..start + chunk, level)).collect();
-        let reached = parts.iter().map(|part| part.reached).sum();
+        let parts: Vec<Part> =
+            starts.into_par_iter().map(|start| self.part(start..start + chunk, level, step)).collect();
+        let times = step as f64;
+        let reached = times * parts.iter().map(|part| part.reached).sum::<f64>();
         let mut worst = Worst { cut: 0.0, single: PER_WEIGHT, reached };
         for cell in finest(parts) {
-            worst.cut = worst.cut.max(cell.cut);
-            let additions = HALF_A_UNIT * (cell.count - 1.0).max(0.0) * cell.sum;
-            worst.single = worst.single.max(cell.off + additions);
+            worst.cut = worst.cut.max(times * cell.cut);
+            let additions = HALF_A_UNIT * (times * cell.count - 1.0).max(0.0) * cell.sum;
+            worst.single = worst.single.max(times * (cell.off + additions));
         }
         if worst.cut > 0.0 {
             worst.cut += FAR * level;
@@ -121,14 +125,16 @@ impl<'a> Map<'a> {
         worst
     }
 
-    /// Some of the ghosts, counted group by group.
-    fn part(&self, range: Range<usize>, level: f64) -> Part {
+    /// Some of the ghosts, counted group by group, each standing for `step` of them.
+    fn part(&self, range: Range<usize>, level: f64, step: usize) -> Part {
         let mut part = Part::new(self.problem.frame(), level, self.kept);
         let mut first = 0;
         for (group, &bell) in self.groups.iter().zip(&self.of_group) {
             let count = group.members.len();
             let within = |place: usize| place.clamp(first, first + count) - first;
-            for &index in &group.members[within(range.start)..within(range.end)] {
+            let (start, end) = (within(range.start), within(range.end));
+            let start = ((first + start).next_multiple_of(step) - first).min(end);
+            for &index in group.members[start..end].iter().step_by(step) {
                 let index = index as usize;
                 part.add(&self.problem.ghosts()[index], self.weighed.weights[index], &self.bells[bell]);
             }
@@ -176,8 +182,9 @@ struct Part {
     level: f64,
     /// What a ghost may be where it does not count.
     far: f64,
-    /// The sides of a ghost's cells, in sizes.
+    /// The sides of a ghost's cells, in sizes, and in where it ends.
     of_size: f64,
+    of_end: f64,
     least: u32,
     levels: Vec<Level>,
     reached: f64,
@@ -202,14 +209,17 @@ struct Along {
 
 impl Part {
     fn new(frame: Frame, level: f64, kept: usize) -> Self {
-        let (far, of_size) = (FAR * level / kept as f64, OF_SIZE[usize::from(kept > FEW)]);
+        let far = FAR * level / kept as f64;
+        let along = (CELLS / kept as f64).sqrt();
+        let [of_size, of_end] =
+            [(EXTENT, OF_SIZE), (2.0, OF_END)].map(|(extent, [least, most])| (extent / along).clamp(least, most));
         let cells = |shift: u32| {
             let along = |side: u32| (u64::from(side) >> shift) + 1;
             along(frame.window.width) * along(frame.window.height)
         };
         let least = (0..32).find(|&shift| cells(shift) <= MOST as u64).unwrap_or(31);
         let (levels, columns, rows) = (Vec::new(), Vec::new(), Vec::new());
-        Self { frame, level, far, of_size, least, levels, reached: 0.0, columns, rows }
+        Self { frame, level, far, of_size, of_end, least, levels, reached: 0.0, columns, rows }
     }
 
     fn add(&mut self, ghost: &Ghost, weight: f64, slopes: &Slopes<'_>) {
@@ -251,7 +261,7 @@ impl Part {
     /// The cells of a bell that has to do with these columns and rows.
     fn shift(&self, bell: &Seen<'_>, x: &Span, y: &Span) -> u32 {
         let ends = bell.slopes.ends;
-        let part = if ends.is_finite() { OF_END * ends } else { self.of_size };
+        let part = if ends.is_finite() { self.of_end * ends } else { self.of_size };
         let finest = part * bell.size[0].min(bell.size[1]);
         let mut shift = self.least.max((finest.max(1.0).log2() as u32).min(31));
         let count = |span: &Span, shift: u32| (span.high >> shift) as usize - (span.low >> shift) as usize + 1;
@@ -347,7 +357,7 @@ impl Seen<'_> {
                 let (exponent, of_offset) = match self.slopes.kind {
                     Kind::Exponential => (0.5 * near * near, 0.0),
                     Kind::Periodic => (0.0, 2.0 * PER_OFFSET),
-                    Kind::Product | Kind::Radial => (0.0, PER_OFFSET),
+                    Kind::Product | Kind::Radial => (0.0, self.slopes.per_offset),
                 };
                 here.shift = PER_OFFSET * anchor + of_offset * far + self.beside[axis];
                 // f32 may see a bell that has ended.

@@ -11,6 +11,7 @@ use std::sync::Arc;
 
 use super::candidate::{Survey, made};
 use super::direct::{HALF_A_UNIT, STORED};
+use super::request::GHOSTS_A_ROUND;
 use super::weigh::Weighed;
 use super::{Cost, Evaluator, Group, Layer, Plan, Precision, Prediction, Request, Transform, cost, share};
 use crate::frame::Frame;
@@ -46,6 +47,12 @@ const CLOSE: f64 = 0.4;
 const TRIES: usize = 6;
 const MOST_TRIES: usize = 40;
 
+/// And of many ghosts, which are looked at all at once as seldom as may be: first, so many of them say where to begin, a little
+/// below which it is.
+const FAR_FROM: f64 = 0.02;
+const SAMPLED: usize = 4096;
+const BELOW: f64 = 0.8;
+
 /// Ghosts that are looked at for an estimate.
 const SAMPLE: usize = 512;
 
@@ -75,7 +82,7 @@ impl Local {
 }
 
 impl Local {
-    /// Whether the lists of 64-bit ghosts, eight of them a round, are what a renderer goes through and has room for.
+    /// Whether the lists of 64-bit ghosts, some of them a round, are what a renderer goes through and has room for.
     ///
     /// # Errors
     /// [`Error::Plan`] where they are not.
@@ -84,7 +91,7 @@ impl Local {
             return Ok(());
         }
         let ghosts: usize = self.groups.iter().map(|group| group.ghosts).sum();
-        if ghosts / 8 > loop_rounds {
+        if ghosts / GHOSTS_A_ROUND > loop_rounds {
             return Err(Error::Plan("local would need more rounds of a loop than this renderer runs".into()));
         }
         let blocks = self.side() / f64::from(1u32 << block_shift(self.side())) + 1.0;
@@ -92,6 +99,64 @@ impl Local {
             return Err(Error::Plan("local would need longer lists than it has room for".into()));
         }
         Ok(())
+    }
+}
+
+/// What floats cost, where storing what 64 bits give in 32 costs so much.
+fn floats(worst: &Worst, precision: Precision, stored: f64) -> f64 {
+    match precision {
+        Precision::Single => worst.rounding(precision),
+        Precision::Double => stored + worst.rounding(precision),
+    }
+}
+
+/// The highest level found that stays within the budget, and in which floats.
+struct Search {
+    found: Option<(f64, Worst)>,
+    precision: Precision,
+}
+
+impl Search {
+    /// Looks at each `step`-th of the ghosts, from this level on: in floats that are given, or in 32 bits where these can.
+    ///
+    /// # Errors
+    /// [`Error::ToleranceBelowFloor`] where floats cannot be as exact.
+    fn new(
+        map: &Map<'_>,
+        step: usize,
+        (part, stored): (f64, f64),
+        given: Option<Precision>,
+        mut level: f64,
+    ) -> Result<Self> {
+        let mut worst = map.worst(level, step);
+        let single = worst.rounding(Precision::Single) <= SINGLE * part;
+        let mut precision = given.unwrap_or(if single { Precision::Single } else { Precision::Double });
+        let mut found: Option<(f64, Worst)> = None;
+        for attempt in 0..MOST_TRIES {
+            // What floats cost grows a little with the reach.
+            if given.is_none() && precision == Precision::Single && worst.single > (1.0 - NEEDED) * part {
+                (precision, found) = (Precision::Double, None);
+            }
+            let rounding = floats(&worst, precision, stored);
+            if rounding > (1.0 - NEEDED) * part {
+                return Err(Error::ToleranceBelowFloor { asked: part, floor: rounding / (1.0 - NEEDED) });
+            }
+            let budget = 0.98 * (part - rounding);
+            if worst.cut <= budget {
+                found = found.filter(|(highest, _)| *highest > level).or(Some((level, worst)));
+            }
+            // Each try with many ghosts costs more than it saves.
+            let close = if map.kept > SAMPLED && step == 1 { FAR_FROM } else { CLOSE };
+            let close = worst.cut <= budget && (worst.cut >= close * budget || worst.cut == 0.0 || level >= budget);
+            if close || found.is_some() && (attempt >= TRIES || worst.cut > budget) {
+                break;
+            }
+            // However many meet at a place, each leaves out no more than the level.
+            let factor = if attempt < TRIES { 0.75 * budget / worst.cut } else { 0.1 };
+            level = (level * factor).min(budget);
+            worst = map.worst(level, step);
+        }
+        Ok(Self { found, precision })
     }
 }
 
@@ -117,43 +182,21 @@ pub(super) fn layer(
     given: Option<Precision>,
     loop_rounds: usize,
 ) -> Result<Bounded> {
-    let floats = |worst: &Worst, precision: Precision| match precision {
-        Precision::Single => worst.rounding(precision),
-        Precision::Double => stored + worst.rounding(precision),
-    };
+    let ghosts: usize = groups.iter().map(|group| group.ghosts).sum();
     let map = Map::new(problem, weighed, groups);
+    // A few of many ghosts say about which level it will be.
+    let step = ghosts.div_ceil(SAMPLED);
     let mut level = 0.7 * part / crowding(problem, weighed, part);
-    let mut worst = map.worst(level);
-    let single = worst.rounding(Precision::Single) <= SINGLE * part;
-    let mut precision = given.unwrap_or(if single { Precision::Single } else { Precision::Double });
-    // The highest level found that stays within the budget.
-    let mut found: Option<(f64, Worst)> = None;
-    for attempt in 0..MOST_TRIES {
-        // What floats cost grows a little with the reach.
-        if given.is_none() && precision == Precision::Single && worst.single > (1.0 - NEEDED) * part {
-            (precision, found) = (Precision::Double, None);
-        }
-        let rounding = floats(&worst, precision);
-        if rounding > (1.0 - NEEDED) * part {
-            return Err(Error::ToleranceBelowFloor { asked: part, floor: rounding / (1.0 - NEEDED) });
-        }
-        let budget = 0.98 * (part - rounding);
-        if worst.cut <= budget {
-            found = found.filter(|(highest, _)| *highest > level).or(Some((level, worst)));
-        }
-        let close = worst.cut <= budget && (worst.cut >= CLOSE * budget || worst.cut == 0.0 || level >= budget);
-        if close || found.is_some() && (attempt >= TRIES || worst.cut > budget) {
-            break;
-        }
-        // However many meet at a place, each leaves out no more than the level.
-        let factor = if attempt < TRIES { 0.75 * budget / worst.cut } else { 0.1 };
-        level = (level * factor).min(budget);
-        worst = map.worst(level);
+    if step > 1
+        && let Ok(Search { found: Some((few, _)), .. }) = Search::new(&map, step, (part, stored), given, level)
+    {
+        level = BELOW * few;
     }
+    let Search { found, precision } = Search::new(&map, 1, (part, stored), given, level)?;
     let Some((level, worst)) = found else {
         return Err(Error::Plan("local would leave out too much at any reach".into()));
     };
-    let rounding = floats(&worst, precision);
+    let rounding = floats(&worst, precision, stored);
     let groups = groups.iter().map(|group| Group { transform: Transform::Direct, ..group.clone() }).collect();
     let local = Local { groups, level, precision, reached: worst.reached };
     local.has_room(loop_rounds)?;

@@ -1,5 +1,6 @@
 //! Bells by tables, which are upper bounds: a map asks for some dozen values of each ghost.
 
+use crate::plan::direct::per_offset;
 use crate::plan::weigh::along;
 use crate::series::{Bell, Modes, Shape};
 
@@ -13,6 +14,7 @@ pub(super) enum Kind {
     /// A Gaussian: its exponent has the offset's rounding.
     Exponential,
     Product,
+    /// No product, and bounded by the radius alone.
     Radial,
     Periodic,
 }
@@ -24,6 +26,8 @@ pub(super) struct Slopes<'a> {
     pub kind: Kind,
     pub ends: f64,
     pub jump: f64,
+    /// What an offset's rounding shifts it by, for each unit of the offset.
+    pub per_offset: f64,
     /// Entries for each unit of the distance.
     scale: f64,
     /// What it is and how steep it is, at most, from each entry on.
@@ -36,8 +40,8 @@ impl<'a> Slopes<'a> {
         let kind = match bell {
             Bell::Gaussian => Kind::Exponential,
             Bell::VonMises(_) | Bell::SineGaussian(_) => Kind::Periodic,
-            bell if matches!(bell.shape().modes(), Modes::Radial(_)) => Kind::Radial,
-            _ => Kind::Product,
+            bell if matches!(bell.shape().modes(), Modes::Product(_)) => Kind::Product,
+            _ => Kind::Radial,
         };
         let (ends, scale) = (shape.ends(), ENTRIES as f64 / shape.ends().min(FARTHEST));
         let entry = |k: usize| {
@@ -46,7 +50,7 @@ impl<'a> Slopes<'a> {
         };
         let last = if ends.is_finite() { [0.0; 2] } else { entry(ENTRIES) };
         let entries = (0..ENTRIES).map(entry).chain([last]).collect();
-        Self { bell, shape, kind, ends, jump: shape.jump(), scale, entries }
+        Self { bell, shape, kind, ends, jump: shape.jump(), per_offset: per_offset(bell), scale, entries }
     }
 
     /// What it is and how steep it is, at most, at a distance ≥ 0 or farther.

@@ -234,6 +234,19 @@ mean = 0.25
 center = [0, 0]
 size = 1
 radiance = [1, 1, 1]
+[[ghost]]
+bell = "disc"
+center = [0, 0]
+size = 1
+radiance = [1, 1, 1]
+[[ghost]]
+bell = "disc"
+rim = 0
+blades = 6
+rotation = 15
+center = [0, 0]
+size = 1
+radiance = [1, 1, 1]
 [[lens_ghost]]
 bell = "profile"
 profile = "spot"
@@ -244,7 +257,12 @@ share = 0.1
     );
     let scene = read_scene(&path).unwrap();
     let names: Vec<_> = scene.ghosts.iter().map(|ghost| ghost.bell.to_string()).collect();
-    assert_eq!(names, ["cosine-squared", "parabola", "paraboloid", "von-mises", "sine-gaussian"]);
+    assert_eq!(names, ["cosine-squared", "parabola", "paraboloid", "von-mises", "sine-gaussian", "disc", "disc"]);
+    let disc = |index: usize| match &scene.ghosts[index].bell {
+        Bell::Disc(disc) => (disc.rim(), disc.blades(), disc.rotation()),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!([disc(5), disc(6)], [(0.1, 0, 0.0), (0.0, 6, 15.0)]);
     let Bell::SineGaussian(bell) = &scene.ghosts[4].bell else { panic!("{:?}", scene.ghosts[4].bell) };
     assert_eq!((bell.mean, bell.period), (0.25, DVec2::new(4.0, 3.0)));
     let shape = scene.lens_ghosts[0].bell.shape();
@@ -324,7 +342,7 @@ share = 0.1
 #[test]
 fn bells_that_cannot_be_had_are_refused_in_their_line() {
     let ghost = |bell: &str| format!("[[ghost]]\n{bell}\ncenter = [0, 0]\nsize = 1\nradiance = [1, 1, 1]");
-    let refusals: [(&str, &[&str]); 8] = [
+    let refusals: [(&str, &[&str]); 17] = [
         ("bell = \"von-mises\"", &["line 2, column 8", "a von-mises bell is periodic", "`period`"]),
         ("bell = \"sine-gaussian\"", &["line 2, column 8", "a sine-gaussian bell is periodic"]),
         ("bell = \"profile\"", &["line 2, column 8", "needs `profile`"]),
@@ -333,6 +351,18 @@ fn bells_that_cannot_be_had_are_refused_in_their_line() {
         ("bell = \"parabola\"\nmean = 0.5", &["line 3, column 8", "belongs to"]),
         ("bell = \"sine-gaussian\"\nmean = 1.5", &["line 3, column 8", "from -1 to 1"]),
         ("bell = \"sine-gaussian\"\nmean = inf", &["line 3, column 8", "finite"]),
+        ("rim = 0.5", &["line 2, column 7", "`rim` belongs to a bell = \"disc\""]),
+        ("bell = \"gaussian\"\nblades = 6", &["line 3, column 10", "`blades` belongs to"]),
+        ("bell = \"profile\"\nprofile = \"x\"\nrotation = 6", &["line 4, column 12", "`rotation` belongs to"]),
+        ("bell = \"disc\"\nrim = 2.1", &["line 3, column 7", "from 1e-6 to 2 sizes wide, and not 2.1"]),
+        ("bell = \"disc\"\nrim = -0.1", &["line 3, column 7", "and not -0.1"]),
+        (
+            "bell = \"disc\"\nblades = 2",
+            &["line 3, column 10", "from 3 to 16 blades, or 0 where it is round, and not 2"],
+        ),
+        ("bell = \"disc\"\nrim = 0.2\nblades = 17", &["line 4, column 10", "and not 17"]),
+        ("bell = \"disc\"\nblades = 5.5", &["line 3, column 10", "expected u32"]),
+        ("bell = \"disc\"\nrotation = 30", &["line 3, column 12", "a round disc has no rotation"]),
     ];
     for (bell, expected) in refusals {
         assert_refused(&ghost(bell), expected);

@@ -2,7 +2,7 @@ use super::*;
 use crate::chance::Chance;
 use crate::choices::{Mix, Normalize};
 use crate::scene::{AccuracySection, read_scene};
-use crate::series::{SineGaussian, VonMises};
+use crate::series::{Disc, SineGaussian, VonMises};
 
 const PERIOD: DVec2 = DVec2::new(4.1, 3.3);
 
@@ -42,8 +42,12 @@ fn bells(chance: &mut Chance) -> Vec<Bell> {
         profile(chance.between(0.8, 2.0)),
         profile(3.0),
     ];
+    let (rim, rotation) = (chance.between(1e-6, 2.0), number(chance));
+    let blades = one_of(chance, &[3, 5, 6, 9, 16]);
+    let discs = [(rim, 0, 0.0), (0.0, blades, 0.0), (rim, blades, rotation)];
+    let discs = discs.map(|(rim, blades, rotation)| Bell::Disc(Disc::new(rim, blades, rotation).unwrap()));
     let parameterless = Bell::examples().into_iter().take(4);
-    parameterless.chain(periodic).collect()
+    parameterless.chain(periodic).chain(discs).collect()
 }
 
 fn size(chance: &mut Chance) -> DVec2 {

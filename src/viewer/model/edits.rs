@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use super::{Look, LookLens, LookLights};
 use crate::scene::{Ghost, LensGhost, Light};
-use crate::series::{Bell, SineGaussian, VonMises};
+use crate::series::Bell;
 
 /// The period that a bell which is periodic itself begins with, in half picture heights, where the look has none.
 const PERIOD: DVec2 = DVec2::splat(4.0);
@@ -152,12 +152,7 @@ impl Look {
             return;
         };
         self.accuracy.period = Some(period);
-        let set = |bell: &mut Bell| match bell {
-            Bell::VonMises(VonMises { period: own }) | Bell::SineGaussian(SineGaussian { period: own, .. }) => {
-                *own = period;
-            }
-            _ => {}
-        };
+        let set = |bell: &mut Bell| *bell = bell.clone().in_period(period);
         self.ghosts.iter_mut().for_each(|ghost| set(&mut ghost.bell));
         if self.lens.ghosts().iter().any(|ghost| ghost.bell.shape().period().is_some()) {
             self.lens_mut().iter_mut().for_each(|ghost| set(&mut ghost.bell));
@@ -168,7 +163,7 @@ impl Look {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::series::Bell;
+    use crate::series::{Bell, VonMises};
 
     fn light(x: f64) -> Light {
         Light { position: DVec2::new(x, 0.5), flux: [4.0, 2.0, 1.0], size: 0.1, muted: false }

@@ -81,7 +81,7 @@ fn selected(ui: &mut Ui, document: &mut Document) {
     let Some(old) = document.look.ghosts.get(index).cloned() else { return };
     let mut ghost = old.clone();
     ui.strong(format!("Ghost {}", index + 1));
-    let tip = Tip { name: "Bell", about: bell::MEAN, span: bell::SPAN.into(), reset: before.bell.to_string() };
+    let tip = Tip { name: "Bell", about: bell::PARAMETERS, span: bell::SPAN.into(), reset: before.bell.to_string() };
     let bells = Bells::of(&document.look);
     if tip.row(ui, |ui| bells.show(ui, "ghost's bell", &mut ghost.bell)).back {
         ghost.bell = before.bell.clone();

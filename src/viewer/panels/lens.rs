@@ -117,7 +117,7 @@ fn row(ui: &mut Ui, bells: &Bells, index: usize, ghost: &mut LensGhost, before: 
     let back = number.double_clicked();
     let about = "The row; a double click on its number puts all of it back to what the lens had.";
     done_by(ui, format!("row {row}"), about, |_| number);
-    let (name, about) = (format!("bell {row}"), format!("The ghost's profile; {}.", bell::MEAN));
+    let (name, about) = (format!("bell {row}"), format!("The ghost's profile; {}.", bell::PARAMETERS));
     let reset = before.bell.to_string();
     // With its mean, where it has one, in one column.
     let list = |ui: &mut Ui| ui.horizontal(|ui| bells.show(ui, ("bell", index), &mut ghost.bell)).inner;

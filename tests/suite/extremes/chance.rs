@@ -6,7 +6,7 @@ use vglare::frame::Frame;
 use vglare::gpu::Backend;
 use vglare::plan::{Evaluator, Plan, Request};
 use vglare::scene::Ghost;
-use vglare::series::{Bell, SineGaussian, VonMises};
+use vglare::series::Bell;
 
 use super::{measured, request};
 use crate::support::scenes::{self, Chance};
@@ -29,15 +29,7 @@ struct Scene {
 /// The bells of a scene: one in three has Gaussians only, one in three one other bell, and one in three them all.
 fn bells(chance: &mut Chance) -> Vec<Bell> {
     let period = DVec2::new(chance.between(5.0, 9.0), chance.between(3.0, 6.0));
-    let mut all = Bell::examples();
-    for bell in &mut all {
-        match bell {
-            Bell::VonMises(VonMises { period: own }) | Bell::SineGaussian(SineGaussian { period: own, .. }) => {
-                *own = period
-            }
-            _ => {}
-        }
-    }
+    let all: Vec<Bell> = Bell::examples().into_iter().map(|bell| bell.in_period(period)).collect();
     match chance.up_to(2) {
         0 => vec![Bell::Gaussian],
         1 => vec![all[chance.up_to(all.len() as u32 - 1) as usize].clone()],

@@ -103,6 +103,7 @@ fn a_photo_of_last_time_is_opened_again() {
     assert_eq!(next.document().name(), "lamp.exr");
     // One that is gone by now is told of.
     std::fs::remove_file(&path).unwrap();
+    drop(next);
     let mut last = Session::new();
     last.app.remember(State::in_folder(folder.path().join("state")));
     last.settle();
@@ -269,6 +270,7 @@ fn photos_and_looks_are_remembered() {
     session.settle();
     let state = State::in_folder(folder.path().join("state"));
     assert_eq!(state.look().unwrap().unwrap().size, 1.5);
+    drop(session);
     let mut next = Session::new();
     next.app.remember(state);
     next.settle();

@@ -78,9 +78,11 @@ fn bells_are_chosen_from_a_list_and_saved_with_their_parameters() {
     session.click("choose sine-gaussian");
     session.click("bell 1");
     session.click("choose cosine-squared");
+    session.click("bell 3");
+    session.click("choose disc");
     let look = session.document().look.clone();
     let bells: Vec<_> = look.lens.ghosts().iter().map(|ghost| ghost.bell.to_string()).collect();
-    assert_eq!(bells[..3], ["cosine-squared", "sine-gaussian", "gaussian"]);
+    assert_eq!(bells[..3], ["cosine-squared", "sine-gaussian", "disc"]);
     let period = look.accuracy.period.unwrap();
     assert_eq!((look.ghosts[0].bell.shape().period(), look.bell_period()), (Some(period), period));
     assert_eq!(session.app.problem(), None);
