@@ -74,10 +74,10 @@ impl Default for CostModel {
             quad: 650.0,
             canvas: 5.0,
             term_double: 10.0,
-            harmonic_double: 5.5,
-            profile_double: 12.0,
-            strip_double: 12.0,
-            interpolation_double: 22.0,
+            harmonic_double: 4.5,
+            profile_double: 18.0,
+            strip_double: 50.0,
+            interpolation_double: 38.0,
             pass: 130_000.0,
         }
     }
@@ -259,7 +259,11 @@ pub(super) fn estimate(layers: &[Layer], precision: Precision, frame: Frame, mod
         Layer::Direct(groups) if layers.len() == 1 => direct(groups, precision, frame, model) + model.pass,
         // Beside a series it is no pass of its own.
         Layer::Direct(groups) => direct(groups, precision, frame, model),
-        Layer::Local(layer) => local(&layer.groups, layer.reached, layer.precision, frame, model),
+        Layer::Local(layer) => {
+            let beside = layers.len() > 1 && layer.precision == Precision::Double;
+            let canvas = if beside { doubles_canvas(frame, model) } else { 0.0 };
+            local(&layer.groups, layer.reached, layer.precision, frame, model) + canvas
+        }
         Layer::Series(series) => {
             let spectrum: f64 = series.groups.iter().map(|group| gather::cost(group, &group.transform, model)).sum();
             spectrum + field(series.evaluator, series.precision, &Size::of(series), frame, model)
@@ -392,6 +396,12 @@ pub(super) fn local<'a>(
         Precision::Single => reached * splat(bells / ghosts, model) + canvas,
         Precision::Double => listed(ghosts, reached.min(ghosts * pixels), bells / ghosts, model) + canvas,
     }
+}
+
+/// What it costs in nanoseconds that a canvas is one of doubles, and read beside other layers.
+pub(super) fn doubles_canvas(frame: Frame, model: &CostModel) -> f64 {
+    const CANVASES: f64 = 5.0;
+    CANVASES * frame.window.pixels() as f64 * model.canvas
 }
 
 /// What ghosts of so many Gaussians each cost in lists of blocks, which hold some that they hardly reach.

@@ -15,9 +15,10 @@ pub struct Prediction {
     pub interpolation: f64,
     /// Moments of cells that are left out.
     pub gathering: f64,
-    /// f32 while it computes: phases, products, sums.
+    /// Floats while they compute: phases, products, sums.
     pub rounding: f64,
-    /// f32 as the format in which passes leave their results to each other: spectrum, tables, lattice.
+    /// f32 as the format in which passes leave their results to each other: spectrum, tables, lattice; or, where they leave
+    /// doubles, as that of the field.
     pub storage: f64,
 }
 
@@ -33,13 +34,13 @@ impl Prediction {
             + self.single()
     }
 
-    /// The same, but for what single precision costs in all, some of which is storage.
+    /// The same, but for what floats cost in all, some of which is storage.
     pub(super) fn with_single(self, single: f64) -> Self {
         let storage = self.storage.min(0.5 * single);
         Self { storage, rounding: single - storage, ..self }
     }
 
-    /// What single precision costs in all.
+    /// What floats cost in all.
     pub fn single(&self) -> f64 {
         self.rounding + self.storage
     }
@@ -67,7 +68,7 @@ impl Prediction {
             ("truncation", "harmonics left out", truncation),
             ("interpolation", "looking up between the lattice's nodes", interpolation),
             ("gathering", "moments left out", gathering),
-            ("rounding", "32-bit floats while they compute", rounding),
+            ("rounding", "floats while they compute", rounding),
             ("storage", "keeping results as 32-bit floats", storage),
         ];
         sources.into_iter().map(|(name, about, error)| Source { name, about, error })

@@ -252,7 +252,11 @@ impl<'a> Cutting<'a> {
 
     /// What a local layer costs however few its ghosts are.
     fn canvas(&self) -> f64 {
-        cost::local([], 0.0, Precision::Single, self.frame, self.model)
+        let doubles = match self.floats {
+            Precision::Single => 0.0,
+            Precision::Double => cost::doubles_canvas(self.frame, self.model),
+        };
+        cost::local([], 0.0, Precision::Single, self.frame, self.model) + doubles
     }
 
     fn add(&self, summed: &mut Summed, index: usize) {

@@ -184,7 +184,7 @@ impl Field {
 
     /// The parts of a frame's window that are evaluated one after the other.
     pub(super) fn tiles(&self, frame: Frame) -> Vec<Window> {
-        let [columns, rows] = self.lattice_sides(frame);
+        let [columns, rows] = self.series_sides(frame);
         let side = self.side();
         tiles::split(frame.window, [columns.min(side), rows.min(side)], self.most_pixels())
     }
@@ -204,14 +204,30 @@ impl Field {
     fn most_pixels(&self) -> usize {
         // Drivers reset themselves when one draw takes seconds, and `direct` can make that of a tile of any size.
         let bells = self.scene.as_ref().map_or(0, Plan::summed).max(1);
-        self.tile_pixels.min((tiles::BELLS / bells).max(1))
+        self.tile_pixels.min((tiles::BELLS / bells).max(1)).min(self.canvas_pixels())
     }
 
-    /// The most columns and rows that the plan's lattice, if it has one, lets a tile have.
-    fn lattice_sides(&self, frame: Frame) -> [u32; 2] {
-        let texture_size = self.runner.device().info().limits.texture_size;
-        let lattice = self.scene.as_ref().and_then(Plan::lattice);
-        lattice.map_or([u32::MAX; 2], |lattice| tiles::sides_on(lattice, frame, texture_size))
+    /// The most columns and rows that the plan's series, if it has one, lets a tile have: by its lattice, and where it is in
+    /// 64-bit floats by what its passes leave each other.
+    fn series_sides(&self, frame: Frame) -> [u32; 2] {
+        let limits = &self.runner.device().info().limits;
+        let mut sides = [u32::MAX; 2];
+        let mut at_most = |most: [u32; 2]| sides.iter_mut().zip(most).for_each(|(side, most)| *side = most.min(*side));
+        let Some(series) = self.scene.as_ref().and_then(Plan::series) else { return sides };
+        if let Some(lattice) = &series.lattice {
+            at_most(tiles::sides_on(lattice, frame, limits.texture_size));
+        }
+        if series.precision == Precision::Double {
+            at_most(tiles::sides_of_doubles(series, frame, limits.storage_block));
+        }
+        sides
+    }
+
+    /// The most pixels that a canvas of doubles has, where there is one.
+    fn canvas_pixels(&self) -> usize {
+        let exact = self.scene.as_ref().is_some_and(|plan| plan.is_exact() && plan.local().is_some());
+        let block = self.runner.device().info().limits.storage_block;
+        if exact { (block / tiles::CANVAS_BYTES) as usize } else { usize::MAX }
     }
 
     /// Evaluates all of a frame once and holds it: until the scene changes, pictures of this frame look it up, and a change
@@ -243,9 +259,10 @@ impl Field {
         Ok(())
     }
 
-    /// The parts of a window that the evaluator can be readied for: all of it, but where its lattice is very fine.
+    /// The parts of a window that the evaluator can be readied for: all of it, but where its lattice is very fine,
+    /// or doubles have no room.
     fn pieces(&self, frame: Frame) -> Vec<Window> {
-        tiles::split(frame.window, self.lattice_sides(frame), usize::MAX)
+        tiles::split(frame.window, self.series_sides(frame), self.canvas_pixels())
     }
 
     /// Readies the field of a whole frame: the one that is held, or the evaluator.

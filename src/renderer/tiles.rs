@@ -9,13 +9,16 @@ use crate::frame::{Frame, Window};
 use crate::gpu::evaluators::LatticeTile;
 use crate::gpu::exact::{self, ExactTile};
 use crate::gpu::layout::{KNOT_BITS, Knots};
-use crate::plan::{DOUBLE_ORDER, Lattice};
+use crate::plan::{DOUBLE_ORDER, Lattice, Series};
 use crate::series::{phase, spline_gains, waves};
 
 const _: () = assert!(DOUBLE_ORDER == exact::ORDER);
 
 /// The largest tile: 4 Mpx, 64 MiB for each texture of RGBA f32.
 pub(super) const PIXELS: usize = 4 << 20;
+
+/// What a pixel takes on a canvas of doubles, and a little.
+pub(super) const CANVAS_BYTES: u64 = 25;
 
 /// Bells that one draw may evaluate.
 pub(super) const BELLS: usize = 20_000_000_000;
@@ -55,6 +58,25 @@ pub(super) fn sides_on(lattice: &Lattice, frame: Frame, texture_size: u32) -> [u
     // So many nodes hold a pixel, and rounding may ask for one more.
     let hold = f64::from(lattice.order + 1);
     [0, 1].map(|axis| ((most[axis] - hold) / pitch[axis]).floor().max(0.0) as u32).map(|side| side.saturating_add(1))
+}
+
+/// The most columns and rows of a tile whose waves, sums and nodes of doubles each fit a storage block of so many bytes.
+pub(super) fn sides_of_doubles(series: &Series, frame: Frame, block: u64) -> [u32; 2] {
+    const WAVE: f64 = 16.0;
+    const PROFILE: f64 = 48.0;
+    const NODE: f64 = 24.0;
+    // A wave more says how many there are.
+    let block = block as f64 - WAVE;
+    let [across, along] = series.degree().map(|degree| f64::from(degree + 1));
+    let (columns, rows) = (block / (WAVE * across), block / (WAVE * along).max(PROFILE * across));
+    let whole = |sides: [f64; 2]| sides.map(|side| (side as u32).max(1));
+    let Some(lattice) = series.lattice else { return whole([columns, rows]) };
+    // Nodes a pixel, and those that a tile has beside.
+    let (pitch, beside) = (frame.pixel_sides() / lattice.step, f64::from(lattice.order + 2));
+    let width = ((columns - beside) / pitch.x).min(f64::from(frame.window.width));
+    let columns = width.max(1.0) * pitch.x + beside;
+    let lines = block / (NODE * columns);
+    whole([width, ((rows.min(lines) - beside) / pitch.y).min(lines)])
 }
 
 /// The same positions in periods, within half of one.
@@ -170,6 +192,7 @@ impl Pitch {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::{Evaluator, Precision};
 
     #[test]
     fn tiles_cover_every_pixel_once() {
@@ -218,6 +241,51 @@ mod tests {
             }
         }
         assert!(tightest > MOST_NODES - 100, "{tightest}");
+    }
+
+    #[test]
+    fn what_a_tile_of_doubles_takes_fits_a_block() {
+        let frame = Frame::full(16384, 9000);
+        let lattice = |nodes: [u32; 2]| {
+            let (low, high) = frame.bounds();
+            let step = (high - low) / DVec2::new(f64::from(nodes[0]), f64::from(nodes[1]));
+            Lattice { order: 8, step, nodes, oversampling: DVec2::ONE, error: 0.0 }
+        };
+        for (degree, lattice) in
+            [(100, None), (4000, None), (900, Some(lattice([3000, 2000]))), (4000, Some(lattice([4000, 3900])))]
+        {
+            let series = Series {
+                evaluator: if lattice.is_some() { Evaluator::Grid } else { Evaluator::Rows },
+                precision: Precision::Double,
+                period: DVec2::new(8.0, 6.0),
+                counts: vec![degree + 1; degree as usize + 1].into(),
+                groups: Vec::new(),
+                modes: None,
+                lattice,
+            };
+            for block in [16u64 << 20, 128 << 20] {
+                let sides = sides_of_doubles(&series, frame, block);
+                let [width, height] = [sides[0].min(frame.width), sides[1].min(frame.height)];
+                assert!(width > 1 && height > 1, "{degree}, {block}: {width} x {height}");
+                // Wherever it lies.
+                let tile = Window { x: 16384 - width as i32, y: 9000 - height as i32, width, height };
+                let [columns, rows] = match &lattice {
+                    Some(lattice) => {
+                        let nodes = Nodes::new(lattice, series.period, frame, tile);
+                        [nodes.count(0), nodes.count(1)]
+                    }
+                    None => [width, height].map(|side| side as usize),
+                };
+                let harmonics = degree as usize + 1;
+                let strips = if lattice.is_some() { 24 * columns * height as usize } else { 0 };
+                let nodes = if lattice.is_some() { 24 * columns * rows } else { 0 };
+                for bytes in
+                    [16 * (columns * harmonics + 1), 16 * (rows * harmonics + 1), 48 * rows * harmonics, nodes, strips]
+                {
+                    assert!(bytes as u64 <= block, "{degree}, {block}: {bytes} of a tile of {width} x {height}");
+                }
+            }
+        }
     }
 
     #[test]

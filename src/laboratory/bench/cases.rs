@@ -100,7 +100,7 @@ pub(super) fn described(plan: &Plan) -> String {
     let [n, m] = plan.degree();
     let lattice = plan.lattice().map(|Lattice { nodes: [x, y], .. }| format!(", a lattice of {x} × {y} nodes"));
     let groups = plan.groups().count();
-    let gathered = match plan.groups().filter(|group| group.transform != Transform::Dispatch).count() {
+    let gathered = match plan.groups().filter(|group| matches!(group.transform, Transform::Gather(_))).count() {
         0 => String::new(),
         gathered => format!(", {gathered} of them gathered"),
     };
