@@ -71,14 +71,14 @@ impl Default for CostModel {
             spectrum: 8.0,
             moment: built_in_moment(),
             splat: 2.8,
-            quad: 650.0,
-            canvas: 5.0,
-            term_double: 10.0,
+            quad: 450.0,
+            canvas: 8.0,
+            term_double: 8.5,
             harmonic_double: 4.5,
-            profile_double: 18.0,
+            profile_double: 10.0,
             strip_double: 50.0,
-            interpolation_double: 38.0,
-            pass: 130_000.0,
+            interpolation_double: 30.0,
+            pass: 50_000.0,
         }
     }
 }
@@ -400,7 +400,7 @@ pub(super) fn local<'a>(
 
 /// What it costs in nanoseconds that a canvas is one of doubles, and read beside other layers.
 pub(super) fn doubles_canvas(frame: Frame, model: &CostModel) -> f64 {
-    const CANVASES: f64 = 5.0;
+    const CANVASES: f64 = 3.0;
     CANVASES * frame.window.pixels() as f64 * model.canvas
 }
 
@@ -425,8 +425,9 @@ pub(super) fn reaching(group: &Group, reached: f64, floats: Precision, model: &C
     group.ghosts as f64 * model.quad + bells
 }
 
-/// How many times as long as by `direct` a bell takes in 64-bit floats where it comes from a list, a Gaussian: 9 to 11 on llvmpipe.
-const LISTED: f64 = 10.0;
+/// How many times as long as by `direct` a bell takes in 64-bit floats where it comes from a list, a Gaussian: 5 to 7
+/// on llvmpipe.
+const LISTED: f64 = 6.0;
 
 /// What `direct` does at a pixel beside its bells, in bells: 2 to 3 on llvmpipe, for 1 to 6 ghosts.
 const AROUND_BELLS: f64 = 2.5;

@@ -69,6 +69,17 @@ impl<'a> Decay<'a> {
         }
     }
 
+    /// What finding the fewest modes is expected to cost at least, before it is tried.
+    pub fn expected_work(&self, error: f64) -> f64 {
+        match *self {
+            Self::Product { factor, size } => {
+                let harmonics = factor.degree(error, size.x) + factor.degree(error, size.y);
+                self.work(harmonics.min(f64::from(2 * HIGHEST_DEGREE)) as usize)
+            }
+            Self::Radial { .. } | Self::None { .. } => self.work(0),
+        }
+    }
+
     /// What [`Decay::marginals`] of a group cost about, in nanoseconds.
     pub fn held_work(&self, group: &Group) -> f64 {
         let [n, m] = group.degree.map(|degree| f64::from(degree + 1));

@@ -47,7 +47,15 @@ impl Effort {
         if self.spent.get() <= self.most.get() {
             return Ok(());
         }
-        Err(Error::Plan("planning it would cost more than it could save".into()))
+        Err(too_much())
+    }
+
+    /// Whether so many nanoseconds more are left.
+    ///
+    /// # Errors
+    /// [`Error::Plan`] where they are not.
+    pub fn expect(&self, nanoseconds: f64) -> Result<()> {
+        if self.spent.get() + nanoseconds <= self.most.get() { Ok(()) } else { Err(too_much()) }
     }
 
     /// What was spent, for tests.
@@ -55,6 +63,10 @@ impl Effort {
     pub fn spent(&self) -> f64 {
         self.spent.get()
     }
+}
+
+fn too_much() -> Error {
+    Error::Plan("planning it would cost more than it could save".into())
 }
 
 /// What planning may cost beside a plan in hand, both in milliseconds.

@@ -174,6 +174,7 @@ impl<'a> Cutting<'a> {
         let mut needs = Vec::with_capacity(groups.len());
         for group in groups {
             let decay = Decay::new(group, period);
+            survey.effort.expect(decay.expected_work(part / group.weight)).ok()?;
             let kept = decay.kept(part / group.weight).ok();
             survey
                 .effort

@@ -139,6 +139,8 @@ pub(super) fn fewest(groups: &mut [Group], period: DVec2, budget: f64, effort: &
     let part = budget / groups.len().max(1) as f64;
     let mut union = vec![1];
     for groups in groups.chunks_mut(AT_ONCE) {
+        let expected = |group: &Group| Decay::new(group, period).expected_work(part / group.weight);
+        effort.expect(groups.iter().map(expected).sum())?;
         let kept = |group: &Group| Decay::new(group, period).kept(part / group.weight);
         let kept: Vec<Result<Vec<u32>>> = groups.par_iter().map(kept).collect();
         for (group, counts) in groups.iter_mut().zip(kept) {

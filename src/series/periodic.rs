@@ -46,6 +46,9 @@ trait Periodic: Sync {
     /// a_n and b_n of the factor for n = 0 ..= `highest`.
     fn coefficients(&self, highest: u32, size: f64) -> Vec<[f64; 2]>;
 
+    /// What a harmonic of the tails of a size in periods costs, about, in nanoseconds.
+    fn work(&self, size: f64) -> f64;
+
     /// What the shader needs to know beside offset, size and period.
     fn parameter(&self) -> f64;
 }
@@ -68,6 +71,10 @@ impl Periodic for VonMises {
         ive_all(highest, (TAU * size).powi(-2)).into_iter().map(|mean| [mean, 0.0]).collect()
     }
 
+    fn work(&self, _size: f64) -> f64 {
+        1000.0
+    }
+
     fn parameter(&self) -> f64 {
         0.0
     }
@@ -87,6 +94,11 @@ impl Periodic for SineGaussian {
 
     fn coefficients(&self, highest: u32, size: f64) -> Vec<[f64; 2]> {
         by_samples(highest, samples(highest, size), |x| self.factor(x, size))
+    }
+
+    /// Every harmonic meets every sample.
+    fn work(&self, size: f64) -> f64 {
+        1000.0 + 6.0 * f64::from(samples(0, size))
     }
 
     fn parameter(&self) -> f64 {
@@ -195,8 +207,8 @@ impl<B: Periodic> Factor for B {
     }
 
     /// Each harmonic asks for those that lie beyond it, too.
-    fn work(&self, _size: f64) -> f64 {
-        1000.0
+    fn work(&self, size: f64) -> f64 {
+        Periodic::work(self, size)
     }
 
     /// Where a Gaussian of the same size has no more than ε left.

@@ -23,7 +23,7 @@ use crate::series::{Bell, Distinct};
 /// as fine as so many cells of all ghosts together allow, of a ghost that reaches as far as most do: bounds are the closer.
 const OF_SIZE: [f64; 2] = [0.45, 3.0];
 const OF_END: [f64; 2] = [0.1, 0.5];
-const CELLS: f64 = 4e5;
+const CELLS: f64 = 2e5;
 const EXTENT: f64 = 15.0;
 
 /// A ghost has at most so many cells, and so has the window.

@@ -50,7 +50,7 @@ const MOST_TRIES: usize = 40;
 /// And of many ghosts, which are looked at all at once as seldom as may be: first, so many of them say where to begin, a little
 /// below which it is.
 const FAR_FROM: f64 = 0.02;
-const SAMPLED: usize = 4096;
+const SAMPLED: usize = 1024;
 const BELOW: f64 = 0.8;
 
 /// Ghosts that are looked at for an estimate.
