@@ -24,7 +24,7 @@ pub struct AccuracyArgs {
     #[arg(long, value_name = "MILLISECONDS", conflicts_with = "tolerance", value_parser = budget)]
     budget: Option<f64>,
 
-    /// Where 32-bit floats cannot be as exact as asked, be as exact as they can, instead of failing
+    /// Where the tolerance cannot be had, take the lowest that can, instead of failing
     #[arg(long)]
     allow_floor: bool,
 

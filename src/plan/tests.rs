@@ -8,6 +8,7 @@ use super::*;
 use crate::chance::Chance;
 use crate::frame::Frame;
 use crate::reference;
+use crate::series::moments::Cells;
 use crate::series::{Bell, Modes};
 
 fn plan(ghosts: &[Ghost], frame: Frame, request: &Request) -> Result<Plan> {
@@ -310,5 +311,30 @@ fn what_a_round_bell_holds_along_an_axis_is_bounded_by_its_envelope() {
             }
             assert!(many[1] < 12.0 * few[1], "{bell}: {} for {}", many[1], few[1]);
         }
+    }
+}
+
+#[test]
+fn modes_of_gathered_gaussians_are_those_of_each_by_itself() {
+    let ghosts: Vec<Ghost> = (0..200)
+        .map(|k| {
+            let [x, y, t] = [0.618, 0.414, 0.732].map(|step| (step * f64::from(k)).fract());
+            ghost([3.0 * x - 1.5, 2.0 * y - 1.0], [0.2 + 0.07 * t, 0.15 + 0.0525 * t])
+        })
+        .collect();
+    let survey = Survey::new(&Problem::new(&ghosts[..], Frame::full(64, 36)), &Request::new(1e-3));
+    let (period, counts) = (DVec2::new(6.0, 4.5), [12, 12, 11, 10, 8, 5, 2]);
+    let of = |transform: Transform| {
+        let group = |group: &Group| Group { degree: [6, 11], transform, ..group.clone() };
+        let groups: Vec<Group> = survey.groups.iter().map(group).collect();
+        assert!(groups.iter().all(|group| group.proportional));
+        amplitudes::modes(&ghosts, &groups, &counts, period, survey.weighed.scale)
+    };
+    let cells = Cells { counts: [9, 14], orders: [14, 14] };
+    let (each, gathered) = (of(Transform::Dispatch), of(Transform::Gather(Gathering { cells, sizes: 10 })));
+    let largest = each.as_flattened().as_flattened().iter().fold(0.0f64, |most, term| most.max(term.abs()));
+    assert!(each.len() == 60 && largest > 0.01, "{largest}");
+    for (each, gathered) in each.as_flattened().as_flattened().iter().zip(gathered.as_flattened().as_flattened()) {
+        assert!((each - gathered).abs() < 1e-6 * largest, "{each:e} {gathered:e} of {largest:e}");
     }
 }

@@ -56,7 +56,7 @@ pub struct FindSection {
 pub struct AccuracySection {
     /// What the plan is to reach.
     pub goal: Option<Goal>,
-    /// Whether to be as exact as 32-bit floats can, where they cannot be as exact as asked.
+    /// Whether to take the lowest tolerance that can be had, where what is asked cannot.
     pub allow_floor: bool,
     /// How the field is computed.
     pub evaluator: Option<Evaluator>,

@@ -68,7 +68,7 @@ fn goal(ui: &mut Ui, document: &mut Document) {
         (Goal::Tolerance(tolerance), Goal::Budget(_)) => TOLERANCES.show(ui, tolerance, TOLERANCE),
         (Goal::Budget(budget), opened) => BUDGETS.show(ui, budget, opened.budget().unwrap_or(BUDGET)),
     };
-    let about = "Where 32-bit floats cannot be as exact as asked, be as exact as they can.";
+    let about = "Where the tolerance cannot be had, take the lowest that can.";
     flag(ui, "Allow floor", about, &mut document.look.accuracy.allow_floor, opened.allow_floor);
 }
 

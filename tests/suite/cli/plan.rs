@@ -81,10 +81,10 @@ fn what_cannot_be_had_is_refused_in_the_plan_with_the_reason() {
     place.photo("in.exr");
     place.text("scene.toml", "[[ghost]]\ncenter = [0.0, 0.0]\nsize = 0.000001\nradiance = [1.0, 1.0, 1.0]\n");
     let plan = place.json(&["plan", "in.exr", "--scene", "scene.toml", "--size", "1921x1081", "--json"]);
-    assert_eq!(plan["plan"]["evaluator"], "local", "{plan}");
+    assert_eq!(plan["plan"]["evaluator"], "direct", "{plan}");
     let refused = plan["plan"]["refused"].as_array().expect("a list");
     let reasons: Vec<&str> = refused.iter().filter_map(|one| one["reason"].as_str()).collect();
-    // A single bell that reaches few pixels takes less than most series whatever they have to sum.
+    // A single bell at every pixel takes less than most series whatever they have to sum.
     let [series, rows, grid] = reasons[..] else { panic!("{plan}") };
     assert!(series.contains("the passes of series alone") && grid.contains("the passes of grid alone"), "{plan}");
     assert!(rows.contains("degree"), "{plan}");

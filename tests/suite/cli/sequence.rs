@@ -204,7 +204,9 @@ fn a_bad_photo_stops_the_sequence_or_is_left_out() {
 #[test]
 fn an_error_that_knows_no_file_gets_the_photos_name() {
     let (place, names) = place(2);
-    place.vglare(&apply(&names, &["-o", "out/", "--tolerance", "1e-12"])).failed(3, &["shot.0001.exr: ", "32-bit"]);
+    place
+        .vglare(&apply(&names, &["-o", "out/", "--tolerance", "1e-12"]))
+        .failed(3, &["shot.0001.exr: ", "below what can be had here"]);
     let ran = place.vglare(&apply(&names, &["-o", "out/", "--tolerance", "1e-12", "--keep-going"]));
     ran.failed(3, &["shot.0001.exr: ", "shot.0002.exr: ", "2 of 2"]);
     assert_eq!(listed(&place, "out"), [""; 0]);

@@ -31,7 +31,8 @@ fn a_tighter_tolerance_hardly_ever_costs_less() {
         }
     }
     println!("{steps} steps; the largest dip {dip}");
-    assert!(dip.value < 0.05, "a bisection over the cost would be lost: {dip}");
+    // Layers, and whether to look at the modes, are chosen by estimates.
+    assert!(dip.value < 0.1, "a bisection over the cost would be lost: {dip}");
     assert!(steps > 300, "{steps} steps are too few to say so");
 }
 
