@@ -280,7 +280,7 @@ fn the_floor_that_is_named_has_a_plan_and_is_the_same_whatever_was_asked() {
         let request = Request { evaluator: Some(Evaluator::Rows), ..Request::new(tolerance) };
         (plan(std::slice::from_ref(&sharp), frame, &request), request)
     };
-    let floors = [1e-7, 1.7e-6].map(|asked| match at(asked).0 {
+    let floors = [1e-7, 3e-7].map(|asked| match at(asked).0 {
         Err(Error::ToleranceBelowFloor { floor, .. }) => floor,
         other => panic!("{asked}: {other:?}"),
     });
