@@ -141,10 +141,14 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
     if let Some(estimate) = local.take_if(early) {
         found.local(problem, &survey, request, estimate);
     }
-    // To know the modes of many ghosts takes longer than to cut them: where there are layers, only theirs are looked at.
+    // To know the modes of many ghosts takes longer than to cut them: where there are layers, no series of all is planned.
     let series = found.worth_a_try(problem, request, wanted);
     let cut = survey.kept() > MANY && found.layers(problem, &survey, request, &series);
-    found.series(problem, &survey, request, &series, (given, !cut));
+    if cut {
+        found.refuse(&series, "layers of it and others are expected to take less time");
+    } else {
+        found.series(problem, &survey, request, &series, given);
+    }
     if let Some(estimate) = local {
         found.local(problem, &survey, request, estimate);
     }
@@ -157,7 +161,7 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
             // What the others were held to cannot be had.
             survey.effort.lift();
             found.refusals.retain(|(evaluator, _)| !series.contains(evaluator));
-            found.series(problem, &survey, request, &series, (given, true));
+            found.series(problem, &survey, request, &series, given);
         }
     }
     Ok(found.cheapest())
@@ -228,16 +232,21 @@ impl Found {
         tried
     }
 
-    /// Plans these series, which are predicted as they come where they are `given`; by a look at the modes, or by weights.
+    /// Says of evaluators why none of them was planned alone.
+    fn refuse(&mut self, evaluators: &[Evaluator], reason: &str) {
+        evaluators.iter().for_each(|&evaluator| self.take(evaluator, Err(Error::Plan(reason.to_owned()))));
+    }
+
+    /// Plans these series, which are predicted as they come where they are `given`.
     fn series(
         &mut self,
         problem: &Arc<Problem>,
         survey: &Survey,
         request: &Request,
         series: &[Evaluator],
-        (given, look): (bool, bool),
+        given: bool,
     ) {
-        let wide = if series.is_empty() || !look { None } else { Wide::new(problem, survey, request) };
+        let wide = if series.is_empty() { None } else { Wide::new(problem, survey, request) };
         for &evaluator in series {
             let plan = candidate(problem, survey, wide.as_ref(), request, evaluator).and_then(|plan| {
                 // In the period that periodic bells bring with them the copies of others may land on the picture.

@@ -26,9 +26,10 @@ const OF_END: [f64; 2] = [0.1, 0.5];
 const CELLS: f64 = 2e5;
 const EXTENT: f64 = 15.0;
 
-/// A ghost has at most so many cells, and so has the window.
+/// A ghost has at most so many cells, and the window so many for each ghost, but for the fewest and the most of all.
 const MOST_OF_ONE: usize = 1024;
-const MOST: usize = 1 << 18;
+const MOST_FOR_EACH: usize = 16;
+const MOST: [usize; 2] = [1 << 15, 1 << 18];
 
 /// Far from a ghost all that is left of it, and of all others, together counts for this part of the level.
 const FAR: f64 = 0.01;
@@ -218,7 +219,8 @@ impl Part {
             let along = |side: u32| (u64::from(side) >> shift) + 1;
             along(frame.window.width) * along(frame.window.height)
         };
-        let least = (0..32).find(|&shift| cells(shift) <= MOST as u64).unwrap_or(31);
+        let most = kept.saturating_mul(MOST_FOR_EACH).clamp(MOST[0], MOST[1]) as u64;
+        let least = (0..32).find(|&shift| cells(shift) <= most).unwrap_or(31);
         let (levels, columns, rows) = (Vec::new(), Vec::new(), Vec::new());
         Self { frame, level, far, of_size, of_end, least, levels, reached: 0.0, columns, rows }
     }

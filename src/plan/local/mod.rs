@@ -255,12 +255,19 @@ pub(super) struct Estimate {
 impl Estimate {
     pub fn new(problem: &Problem, survey: &Survey, request: &Request) -> Self {
         const FEW: f64 = 50.0;
+        const ROUNDS: usize = 4;
         let (kept, frame) = (problem.ghosts().len() - survey.weighed.dropped, problem.frame());
+        // Each of very many may be below the tolerance.
+        let (mut level, mut meeting) = (request.tolerance, 0.0f64);
+        for _ in 0..ROUNDS {
+            meeting = reached(problem, &survey.weighed, level) / frame.window.pixels() as f64;
+            level = request.tolerance / (3.0 + 1.5 * meeting);
+        }
         let reached = reached(problem, &survey.weighed, request.tolerance);
         let nanoseconds = cost::local(&survey.groups, reached, Precision::Single, frame, &request.cost_model);
         let milliseconds = 1e-6 * nanoseconds;
         let cost = Cost { evaluator: Evaluator::Local, summed: 0, reaching: kept, milliseconds };
-        Self { cost, work: work(kept), likely: reached <= FEW * frame.window.pixels() as f64 }
+        Self { cost, work: work(kept), likely: meeting <= FEW }
     }
 }
 
