@@ -76,6 +76,20 @@ fn every_bell_is_exact_at_every_tolerance() {
 }
 
 #[test]
+fn lists_of_two_kinds_of_bells_have_none_of_the_others() {
+    let mut chance = Chance::new(12);
+    let mut plans = Vec::new();
+    for bell in &Bell::examples()[1..] {
+        let mut ghosts = small(&mut chance, &Bell::Gaussian, 40, FRAME);
+        ghosts.extend(small(&mut chance, bell, 40, FRAME));
+        let plan = local(&ghosts, FRAME, 2e-7);
+        assert_eq!(plan.precision, Precision::Double, "{bell}");
+        plans.push((format!("gaussian and {bell}"), plan));
+    }
+    hold(&plans);
+}
+
+#[test]
 fn tolerances_that_floats_have_need_no_series() {
     let ghosts = scenes::sized(4, 400, FRAME, 0.03, 0.1);
     let plans = TOLERANCES.map(|tolerance| (format!("400 at {tolerance:e}"), local(&ghosts, FRAME, tolerance)));
