@@ -7,9 +7,9 @@ use glow::HasContext as _;
 
 use super::context::Device;
 use super::layout::PASS;
-use super::resource::{Buffer, Texel, Texture};
+use super::resource::{Buffer, Texel, Texture, VertexArray};
 use super::runner::Runner;
-use crate::{Error, Result};
+use crate::Result;
 
 /// One curve's uniforms; as in `lines.vert`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -23,7 +23,7 @@ const _: () = assert!(size_of::<Uniforms>() == 32);
 /// A plot, white, that curves are drawn into.
 pub(crate) struct LinesPass {
     device: Rc<Device>,
-    array: glow::VertexArray,
+    array: VertexArray,
     vertices: Buffer<[f32; 2]>,
     uniforms: Buffer<Uniforms>,
     target: Texture,
@@ -35,15 +35,13 @@ impl LinesPass {
     /// A plot of `width` × `height` pixels that shows `x` and `y` from their first to their second number.
     ///
     /// # Errors
-    /// [`Error::Gl`] where the driver cannot hold it.
+    /// [`Error::Gl`](crate::Error::Gl) where the driver cannot hold it.
     pub fn new(runner: &Runner, [width, height]: [u32; 2], x: [f32; 2], y: [f32; 2]) -> Result<Self> {
         let device = runner.device();
         let target = Texture::new(device, Texel::Rgba, width, height)?;
         target.clear(1.0);
         let (vertices, uniforms) = (Buffer::new(device, 0)?, Buffer::new(device, 1)?);
-        // SAFETY: the device keeps its context current on this thread.
-        let array = unsafe { device.gl().create_vertex_array() }
-            .map_err(|reason| Error::Gl(format!("vertex array: {reason}")))?;
+        let array = VertexArray::new(device)?;
         let window = [x[0], y[0], x[1] - x[0], y[1] - y[0]];
         let widest = widest_line(device.gl());
         Ok(Self { device: device.clone(), array, vertices, uniforms, target, window, widest })
@@ -63,8 +61,7 @@ impl LinesPass {
             self.target.target(0);
             program.bind();
             let gl = self.device.gl();
-            // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
-            unsafe { gl.bind_vertex_array(Some(self.array)) };
+            self.array.bind();
             self.vertices.bind_vertices(0);
             // SAFETY: the device keeps its context current on this thread; the array's one attribute is the buffer of these
             // vertices, and no more of them are drawn than it was given.
@@ -81,15 +78,6 @@ impl LinesPass {
     pub fn read(&self) -> Vec<[f32; 4]> {
         let values = self.target.read_level(0);
         values.chunks_exact(4).map(|pixel| [pixel[0], pixel[1], pixel[2], pixel[3]]).collect()
-    }
-}
-
-impl Drop for LinesPass {
-    fn drop(&mut self) {
-        if let Some(gl) = self.device.to_free() {
-            // SAFETY: the device's context is there and current, and nothing uses what is freed from here on.
-            unsafe { gl.delete_vertex_array(self.array) }
-        }
     }
 }
 

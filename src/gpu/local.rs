@@ -9,10 +9,10 @@ use super::context::Device;
 use super::evaluators::{STEP, Words, within_rounds};
 use super::exact::room;
 use super::layout::{CANVAS, DoubleGhost, GHOSTS, LARGEST_POINT, LocalGhost, NODES, PARTIALS, PASS, SHAPES};
-use super::resource::{Attribute, Buffer, Scratch, Texel, Texture};
+use super::resource::{Attribute, Buffer, Scratch, Texel, Texture, VertexArray};
 use super::runner::Runner;
+use crate::Result;
 use crate::frame::Frame;
-use crate::{Error, Result};
 
 /// What points reach beyond the tile that their centres lie in, at most, in pixels.
 const MARGIN: i32 = LARGEST_POINT / 2;
@@ -83,7 +83,7 @@ struct Batches {
 
 /// Draws the ghosts of `local`.
 pub(crate) struct LocalPass {
-    array: glow::VertexArray,
+    array: VertexArray,
     ghosts: Buffer<LocalGhost>,
     doubles: Buffer<DoubleGhost>,
     lists: Buffer<u32>,
@@ -106,14 +106,13 @@ impl LocalPass {
         let device = runner.device();
         let (mut sizes, mut support) = ([0.0; 2], [0]);
         // SAFETY: the device keeps its context current on this thread; the range is of two numbers, and the support one.
-        let array = unsafe {
+        unsafe {
             let (gl, target) = (device.gl(), glow::TEXTURE_2D);
             gl.get_parameter_f32_slice(glow::POINT_SIZE_RANGE, &mut sizes);
             gl.get_internal_format_i32_slice(target, glow::RGBA32F, glow::FRAMEBUFFER_BLEND, &mut support);
-            gl.create_vertex_array()
-        };
+        }
         Ok(Self {
-            array: array.map_err(|reason| Error::Gl(format!("vertex array: {reason}")))?,
+            array: VertexArray::new(device)?,
             ghosts: Buffer::new(device, 0)?,
             doubles: Buffer::new(device, 0)?,
             lists: Buffer::new(device, 0)?,
@@ -137,7 +136,7 @@ impl LocalPass {
     /// Uploads ghosts that are drawn, and what their bells need to know beside.
     ///
     /// # Errors
-    /// [`Error::Gl`] where the driver refuses.
+    /// [`Error::Gl`](crate::Error::Gl) where the driver refuses.
     pub fn set_drawn(&mut self, Drawn { ghosts, kinds }: &Drawn<'_>, shapes: &[[f32; 4]]) -> Result<()> {
         self.ghosts.store(ghosts)?;
         self.shapes.store(bytemuck::cast_slice(shapes))?;
@@ -150,7 +149,7 @@ impl LocalPass {
     /// Uploads ghosts that are listed, and what their bells need to know beside.
     ///
     /// # Errors
-    /// [`Error::Gl`] where the driver refuses, or a list is longer than the software renderer goes through for one pixel.
+    /// [`Error::Gl`](crate::Error::Gl) where the driver refuses, or a list is longer than the software renderer goes through for one pixel.
     pub fn set_listed(&mut self, runner: &Runner, listed: &Listed<'_>, shapes: &[[f64; 4]]) -> Result<()> {
         let &Listed { kinds, blocks: [columns, rows], shift, longest, .. } = listed;
         let (blocks, step) = (columns * rows, list_step(longest));
@@ -168,7 +167,7 @@ impl LocalPass {
     /// the bell that listed ghosts have, or of all bells.
     ///
     /// # Errors
-    /// [`Error::Gl`] where the driver refuses.
+    /// [`Error::Gl`](crate::Error::Gl) where the driver refuses.
     pub fn draw(
         &mut self,
         runner: &Runner,
@@ -190,7 +189,7 @@ impl LocalPass {
                 let mut one = |bell: &str, ranges: &[Range<usize>], points: bool| {
                     let margin = if points { MARGIN } else { 0 };
                     self.tile.store(&[[corner[0], corner[1], size[0], size[1], margin, 0, 0, 0, 0, 0, 0, 0]])?;
-                    let how = How { points, margin, array: self.array, bell };
+                    let how = How { points, margin, array: &self.array, bell };
                     add(runner, canvas, &self.ghosts, ranges, &how)
                 };
                 for Batches { bell, points, quads } in kinds {
@@ -238,20 +237,11 @@ impl LocalPass {
     }
 }
 
-impl Drop for LocalPass {
-    fn drop(&mut self) {
-        if let Some(gl) = self.device.to_free() {
-            // SAFETY: the device's context is there and current, and nothing uses what is freed from here on.
-            unsafe { gl.delete_vertex_array(self.array) }
-        }
-    }
-}
-
 /// How ghosts are drawn.
 struct How<'a> {
     points: bool,
     margin: i32,
-    array: glow::VertexArray,
+    array: &'a VertexArray,
     bell: &'a str,
 }
 
@@ -274,8 +264,7 @@ fn add(
     runner.run("local", || {
         canvas.target(0);
         program.bind();
-        // SAFETY: the device keeps its context current on this thread, and what is bound is its own.
-        unsafe { gl.bind_vertex_array(Some(how.array)) };
+        how.array.bind();
         ghosts.bind_attributes(&ATTRIBUTES, u32::from(!how.points));
         // SAFETY: the device keeps its context current on this thread; the array's attributes are the buffer of ghosts, which
         // has those of every range: `set_drawn` took the ranges from the very slice that it stored.

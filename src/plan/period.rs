@@ -102,6 +102,8 @@ pub(super) fn shortest(reaches: &[Reach], budget: f64) -> DVec2 {
 fn bisect(reaches: &[Reach], wrap: impl Fn(&Reach, f64) -> f64, budget: f64, [mut low, mut high]: [f64; 2]) -> f64 {
     // Of most ghosts nothing that counts is left at a period that is too short for others, nor at any longer one.
     const NOTHING: f64 = 1e-12;
+    // The shortest to a millionth of the widest ghost.
+    const HALVINGS: u32 = 20;
     let nothing = NOTHING * budget / reaches.len().max(1) as f64;
     let (mut counting, mut rest): (Vec<(&Reach, f64)>, f64) = (reaches.iter().map(|reach| (reach, 0.0)).collect(), 0.0);
     let mut fits = |period: f64| {
@@ -118,7 +120,7 @@ fn bisect(reaches: &[Reach], wrap: impl Fn(&Reach, f64) -> f64, budget: f64, [mu
     while !fits(high) {
         high = low + 2.0 * (high - low);
     }
-    for _ in 0..40 {
+    for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
         if fits(middle) { high = middle } else { low = middle }
     }

@@ -65,22 +65,21 @@ pub(super) fn apart(problem: &Arc<Problem>, survey: &Survey, request: &Request, 
         .collect()
     };
     let [left, everywhere, reaching] = [Way::Series, Way::Everywhere, Way::Reaching].map(of);
-    let everywhere_weighed = only(&survey.weighed, &everywhere);
-    let bounds = direct::bounds(problem, &everywhere_weighed);
     let exact = floats == Precision::Double;
-    let (precision, rounding) = if exact { (floats, bounds.double) } else { bounds.within(SUMMED * request.tolerance) };
-    if precision == Precision::Double && !request.doubles {
-        return None;
-    }
-    let mut beside = Beside { precision, exact, ..Beside::default() };
+    let mut beside = Beside { precision: floats, exact, ..Beside::default() };
     // What is stored is that of the sum, once.
     let stored = if exact { STORED } else { 0.0 };
     if rounds(everywhere.iter().map(|group| group.ghosts).sum()) > request.loop_rounds {
         return None;
     }
     if !everywhere.is_empty() {
+        let bounds = direct::bounds(problem, &only(&survey.weighed, &everywhere));
+        let part = SUMMED * request.tolerance;
+        (beside.precision, beside.rounding) = if exact { (floats, bounds.double) } else { bounds.within(part) };
+        if beside.precision == Precision::Double && !request.doubles {
+            return None;
+        }
         beside.layers.push(Layer::direct(everywhere));
-        beside.rounding += rounding;
     }
     if !reaching.is_empty() {
         let left_over = request.tolerance - survey.weighed.dropped_error - beside.rounding - stored;
@@ -90,10 +89,9 @@ pub(super) fn apart(problem: &Arc<Problem>, survey: &Survey, request: &Request, 
             (false, _) => LOCAL_ALONE * left_over,
         };
         survey.effort.spend(local::work(reaching.iter().map(|group| group.ghosts).sum())).ok()?;
-        let weighed = only(&survey.weighed, &reaching);
         let given = if exact { Some(floats) } else { (!request.doubles).then_some(Precision::Single) };
         let own = if exact { (part, 0.0) } else { (part, STORED) };
-        let bounded = local::layer(problem, &weighed, &reaching, own, given, request.loop_rounds).ok()?;
+        let bounded = local::layer(problem, &survey.weighed, &reaching, own, given, request.loop_rounds).ok()?;
         // The first layer gives the plan its name.
         beside.layers.insert(0, Layer::Local(bounded.local));
         (beside.rounding, beside.cut) = (beside.rounding + bounded.rounding, bounded.cut);
@@ -129,7 +127,16 @@ fn only(weighed: &Weighed, groups: &[Group]) -> Weighed {
     for &member in groups.iter().flat_map(|group| group.members.iter()) {
         weights[member as usize] = weighed.weights[member as usize];
     }
-    Weighed { weight: weights.iter().sum(), weights, ..weighed.clone() }
+    let Weighed { scale, peaks, nearest, dropped, dropped_error, .. } = weighed;
+    Weighed {
+        scale: *scale,
+        peaks: peaks.clone(),
+        weight: weights.iter().sum(),
+        weights,
+        nearest: nearest.clone(),
+        dropped: *dropped,
+        dropped_error: *dropped_error,
+    }
 }
 
 /// How a group is computed.

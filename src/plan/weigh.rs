@@ -1,5 +1,7 @@
 //! What each ghost means to the picture: the field's scale, and which ghosts never reach it.
 
+use std::sync::Arc;
+
 use glam::DVec2;
 use rayon::prelude::*;
 
@@ -32,7 +34,7 @@ pub(super) struct Weighed {
     /// The sum of the weights.
     pub weight: f64,
     /// For each ghost how far the nearest pixel is from its centre, in sizes.
-    pub nearest: Vec<DVec2>,
+    pub nearest: Arc<Vec<DVec2>>,
     /// How many are dropped, and at most how much that changes at any pixel.
     pub dropped: usize,
     pub dropped_error: f64,
@@ -65,7 +67,7 @@ pub(super) fn weigh(problem: &Problem, tolerance: f64) -> Weighed {
     let (mut weights, reached): (Vec<f64>, Vec<f64>) = ghosts.par_iter().zip(&shares).map(weighed).unzip();
     let (dropped, dropped_error) = drop_faint(&mut weights, &reached, share::DROPPED * tolerance);
     let weight = weights.iter().sum();
-    Weighed { scale, peaks, weights, weight, nearest, dropped, dropped_error }
+    Weighed { scale, peaks, weights, weight, nearest: Arc::new(nearest), dropped, dropped_error }
 }
 
 /// The unit of each colour: the largest value found.

@@ -31,14 +31,14 @@ const MOST_OF_ONE: usize = 1024;
 const MOST_FOR_EACH: usize = 16;
 const MOST: [usize; 2] = [1 << 15, 1 << 18];
 
-/// Far from a ghost all that is left of it, and of all others, together counts for this part of the level.
-const FAR: f64 = 0.01;
+/// Far from a ghost all that is left of it, and of all others, together counts for this part of what may be left out.
+const FAR: f64 = 0.005;
 
 /// What f64 costs of what f32 does: its functions are off by a little more of its unit.
 const DOUBLE: f64 = 5e-9;
 
 /// Ghosts from which on the work is shared, and by how many: so many for any number of cores.
-const MANY: usize = 4096;
+const MANY: usize = 1024;
 const CHUNKS: usize = 4;
 
 /// The worst over all places.
@@ -71,6 +71,8 @@ pub(super) struct Map<'a> {
     bells: Vec<Slopes<'a>>,
     of_group: Vec<usize>,
     pub kept: usize,
+    /// What may be left out, at most.
+    budget: f64,
 }
 
 /// What may meet in a cell.
@@ -93,7 +95,7 @@ struct Level {
 }
 
 impl<'a> Map<'a> {
-    pub fn new(problem: &'a Problem, weighed: &'a Weighed, groups: &'a [Group]) -> Self {
+    pub fn new(problem: &'a Problem, weighed: &'a Weighed, groups: &'a [Group], budget: f64) -> Self {
         let (mut bells, mut distinct) = (Vec::<Slopes<'_>>::new(), Distinct::by_bounds());
         let of_group = groups.iter().map(|group| {
             let (number, new) = distinct.number(&group.bell);
@@ -104,7 +106,7 @@ impl<'a> Map<'a> {
         });
         let of_group = of_group.collect();
         let kept = groups.iter().map(|group| group.members.len()).sum();
-        Self { problem, weighed, groups, bells, of_group, kept }
+        Self { problem, weighed, groups, bells, of_group, kept, budget }
     }
 
     /// The worst where each ghost is left out below a level; or an estimate of it by each `step`-th ghost of a group.
@@ -122,14 +124,14 @@ impl<'a> Map<'a> {
             worst.single = worst.single.max(times * (cell.off + additions));
         }
         if worst.cut > 0.0 {
-            worst.cut += FAR * level;
+            worst.cut += FAR * self.budget;
         }
         worst
     }
 
     /// Some of the ghosts, counted group by group, each standing for `step` of them.
     fn part(&self, range: Range<usize>, level: f64, step: usize) -> Part {
-        let mut part = Part::new(self.problem.frame(), level, self.kept);
+        let mut part = Part::new(self.problem.frame(), level, FAR * self.budget, self.kept);
         let mut first = 0;
         for (group, &bell) in self.groups.iter().zip(&self.of_group) {
             let count = group.members.len();
@@ -210,8 +212,9 @@ struct Along {
 }
 
 impl Part {
-    fn new(frame: Frame, level: f64, kept: usize) -> Self {
-        let far = FAR * level / kept as f64;
+    /// Of a level, and of what all ghosts together may be where none of them counts.
+    fn new(frame: Frame, level: f64, far: f64, kept: usize) -> Self {
+        let far = far.min(level) / kept as f64;
         let along = (CELLS / kept as f64).sqrt();
         let [of_size, of_end] =
             [(EXTENT, OF_SIZE), (2.0, OF_END)].map(|(extent, [least, most])| (extent / along).clamp(least, most));
@@ -286,27 +289,32 @@ impl Part {
         // What f32 flushes to nothing.
         let lost = weight * f64::from(f32::MIN_POSITIVE);
         let (radial, jump) = (bell.slopes.kind == Kind::Radial, bell.slopes.jump);
-        for y in &self.rows {
-            let cells = &mut level.cells[y.cell * level.columns..];
-            for x in &self.columns {
+        // Those that are reached follow each other.
+        let begin = self.columns.iter().position(|x| x.some).unwrap_or(self.columns.len());
+        let reached = self.columns[begin..].iter().take_while(|x| x.some).count();
+        let first = self.columns[0].cell;
+        for y in self.rows.iter().filter(|y| y.value > 0.0) {
+            let from = y.cell * level.columns + first;
+            let cells = &mut level.cells[from..from + self.columns.len()];
+            if !whole {
+                for (cell, x) in cells.iter_mut().zip(&self.columns) {
+                    let cut = self.level.min(weight * x.value * y.value);
+                    cell.cut += if x.all && y.all { 0.0 } else { cut };
+                }
+            }
+            if !y.some {
+                continue;
+            }
+            for (cell, x) in cells[begin..].iter_mut().zip(&self.columns[begin..begin + reached]) {
                 let value = x.value * y.value;
-                if value == 0.0 {
-                    continue;
-                }
-                let cell = &mut cells[x.cell];
-                if !(whole || x.all && y.all) {
-                    cell.cut += self.level.min(weight * value);
-                }
-                if x.some && y.some {
-                    let (slope, most) = if radial {
-                        (x.steep.min(y.steep) * (x.shift + y.shift) + jump, 2.0)
-                    } else {
-                        (x.steep * x.shift * y.value + y.steep * y.shift * x.value, 1.0)
-                    };
-                    cell.off += weight * (x.off * y.value + y.off * x.value + slope.min(most * value)) + lost;
-                    cell.sum += weight * value;
-                    cell.count += 1.0;
-                }
+                let (slope, most) = if radial {
+                    (x.steep.min(y.steep) * (x.shift + y.shift) + jump, 2.0)
+                } else {
+                    (x.steep * x.shift * y.value + y.steep * y.shift * x.value, 1.0)
+                };
+                cell.off += weight * (x.off * y.value + y.off * x.value + slope.min(most * value)) + lost;
+                cell.sum += weight * value;
+                cell.count += 1.0;
             }
         }
     }
@@ -339,33 +347,35 @@ struct Seen<'a> {
 impl Seen<'_> {
     /// The bell in each cell along an axis.
     fn along(&self, axis: usize, span: &Span, shift: u32, cells: &mut Vec<Along>) {
-        let (center, size) = (self.center[axis], self.size[axis]);
-        let anchor = (center.round().clamp(0.0, f64::from(span.last)) - center).abs() / size;
+        let (center, per_pixel) = (self.center[axis], 1.0 / self.size[axis]);
+        let nearest = center.round();
+        let away = |low: f64, high: f64| (nearest.clamp(low, high) - center).abs() * per_pixel;
+        let anchor = away(0.0, f64::from(span.last));
+        let [begin, end] = span.reached;
+        let of_offset = match self.slopes.kind {
+            Kind::Exponential => 0.0,
+            Kind::Periodic => 2.0 * PER_OFFSET,
+            Kind::Product | Kind::Radial => self.slopes.per_offset,
+        };
+        let exponential = if self.slopes.kind == Kind::Exponential { 0.5 } else { 0.0 };
         cells.clear();
         for cell in span.low >> shift..=span.high >> shift {
             let first = cell << shift;
             let last = (u64::from(cell + 1) << shift).min(u64::from(span.last) + 1) as u32 - 1;
             let [low, high] = [first, last].map(f64::from);
-            let near = (center.round().clamp(low, high) - center).abs() / size;
-            let [begin, end] = span.reached;
+            let near = away(low, high);
             let (some, all) = (
                 i64::from(last) >= begin && i64::from(first) < end,
                 i64::from(first) >= begin && i64::from(last) < end,
             );
             let mut here = Along { cell: cell as usize, value: 0.0, off: 0.0, steep: 0.0, shift: 0.0, some, all };
             if some {
-                let reached = (low.max(begin as f64), high.min(end as f64 - 1.0));
-                let far = (reached.0 - center).abs().max((reached.1 - center).abs()) / size;
-                let far = far.min(self.slopes.ends);
-                let (exponent, of_offset) = match self.slopes.kind {
-                    Kind::Exponential => (0.5 * near * near, 0.0),
-                    Kind::Periodic => (0.0, 2.0 * PER_OFFSET),
-                    Kind::Product | Kind::Radial => (0.0, self.slopes.per_offset),
-                };
+                let (low, high) = (low.max(begin as f64), high.min(end as f64 - 1.0));
+                let far = ((low - center).abs().max((high - center).abs()) * per_pixel).min(self.slopes.ends);
                 here.shift = PER_OFFSET * anchor + of_offset * far + self.beside[axis];
                 // f32 may see a bell that has ended.
                 [here.value, here.steep] = self.slopes.at((near - here.shift).max(0.0));
-                here.off = PER_WEIGHT * here.value * (0.5 + exponent);
+                here.off = PER_WEIGHT * here.value * (0.5 + exponential * near * near);
             } else {
                 [here.value, _] = self.slopes.at(near);
             }

@@ -183,10 +183,10 @@ pub(super) fn layer(
     loop_rounds: usize,
 ) -> Result<Bounded> {
     let ghosts: usize = groups.iter().map(|group| group.ghosts).sum();
-    let map = Map::new(problem, weighed, groups);
+    let map = Map::new(problem, weighed, groups, part);
     // A few of many ghosts say about which level it will be.
     let step = ghosts.div_ceil(SAMPLED);
-    let mut level = 0.7 * part / crowding(problem, weighed, part);
+    let mut level = 0.7 * part / crowding(problem, weighed, groups, part);
     if step > 1
         && let Ok(Search { found: Some((few, _)), .. }) = Search::new(&map, step, (part, stored), given, level)
     {
@@ -233,8 +233,9 @@ pub(super) fn candidate(problem: &Arc<Problem>, survey: &Survey, request: &Reque
 }
 
 /// About how many times the level is left out at the worst place, for a start.
-fn crowding(problem: &Problem, weighed: &Weighed, level: f64) -> f64 {
-    3.0 + 1.5 * reached(problem, weighed, level) / problem.frame().window.pixels() as f64
+fn crowding(problem: &Problem, weighed: &Weighed, groups: &[Group], level: f64) -> f64 {
+    let reached: f64 = groups.iter().map(|group| reached_by(problem, weighed, group, level)).sum();
+    3.0 + 1.5 * reached / problem.frame().window.pixels() as f64
 }
 
 /// What planning a local layer of so many ghosts takes about, in nanoseconds.
@@ -256,6 +257,8 @@ impl Estimate {
     pub fn new(problem: &Problem, survey: &Survey, request: &Request) -> Self {
         const FEW: f64 = 50.0;
         const ROUNDS: usize = 4;
+        // The level that is found is hardly ever so many times as high.
+        const SURE: f64 = 8.0;
         let (kept, frame) = (problem.ghosts().len() - survey.weighed.dropped, problem.frame());
         // Each of very many may be below the tolerance.
         let (mut level, mut meeting) = (request.tolerance, 0.0f64);
@@ -263,7 +266,7 @@ impl Estimate {
             meeting = reached(problem, &survey.weighed, level) / frame.window.pixels() as f64;
             level = request.tolerance / (3.0 + 1.5 * meeting);
         }
-        let reached = reached(problem, &survey.weighed, request.tolerance);
+        let reached = reached(problem, &survey.weighed, (SURE * level).min(request.tolerance));
         let nanoseconds = cost::local(&survey.groups, reached, Precision::Single, frame, &request.cost_model);
         let milliseconds = 1e-6 * nanoseconds;
         let cost = Cost { evaluator: Evaluator::Local, summed: 0, reaching: kept, milliseconds };
