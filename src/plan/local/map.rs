@@ -20,10 +20,12 @@ use crate::scene::Ghost;
 use crate::series::{Bell, Distinct};
 
 /// The sides of a ghost's cells are at most so many of its sizes, or of where it ends: from the finest to the coarsest. They are
-/// as fine as so many cells of all ghosts together allow, of a ghost that reaches as far as most do: bounds are the closer.
+/// as fine as so many cells of all ghosts together allow, of a ghost that reaches as far as most do: bounds are the closer. Of
+/// more ghosts than so many there are fewer cells in all, since a closer bound of them saves less than it costs.
 const OF_SIZE: [f64; 2] = [0.45, 3.0];
 const OF_END: [f64; 2] = [0.1, 0.5];
 const CELLS: f64 = 2e5;
+const CLOSELY: f64 = 1024.0;
 const EXTENT: f64 = 15.0;
 
 /// A ghost has at most so many cells, and the window so many for each ghost, but for the fewest and the most of all.
@@ -215,7 +217,8 @@ impl Part {
     /// Of a level, and of what all ghosts together may be where none of them counts.
     fn new(frame: Frame, level: f64, far: f64, kept: usize) -> Self {
         let far = far.min(level) / kept as f64;
-        let along = (CELLS / kept as f64).sqrt();
+        let all = CELLS * (CLOSELY / kept as f64).min(1.0).sqrt();
+        let along = (all / kept as f64).sqrt();
         let [of_size, of_end] =
             [(EXTENT, OF_SIZE), (2.0, OF_END)].map(|(extent, [least, most])| (extent / along).clamp(least, most));
         let cells = |shift: u32| {

@@ -50,7 +50,7 @@ const MOST_TRIES: usize = 40;
 /// And of many ghosts, which are looked at all at once as seldom as may be: first, so many of them say where to begin, a little
 /// below which it is.
 const FAR_FROM: f64 = 0.02;
-const SAMPLED: usize = 1024;
+const SAMPLED: usize = 512;
 const BELOW: f64 = 0.8;
 
 /// Ghosts that are looked at for an estimate.
@@ -146,7 +146,7 @@ impl Search {
                 found = found.filter(|(highest, _)| *highest > level).or(Some((level, worst)));
             }
             // Each try with many ghosts costs more than it saves.
-            let close = if map.kept > SAMPLED && step == 1 { FAR_FROM } else { CLOSE };
+            let close = if map.kept > 2 * SAMPLED && step == 1 { FAR_FROM } else { CLOSE };
             let close = worst.cut <= budget && (worst.cut >= close * budget || worst.cut == 0.0 || level >= budget);
             if close || found.is_some() && (attempt >= TRIES || worst.cut > budget) {
                 break;
@@ -185,7 +185,7 @@ pub(super) fn layer(
     let ghosts: usize = groups.iter().map(|group| group.ghosts).sum();
     let map = Map::new(problem, weighed, groups, part);
     // A few of many ghosts say about which level it will be.
-    let step = ghosts.div_ceil(SAMPLED);
+    let step = if ghosts > 2 * SAMPLED { ghosts.div_ceil(SAMPLED) } else { 1 };
     let mut level = 0.7 * part / crowding(problem, weighed, groups, part);
     if step > 1
         && let Ok(Search { found: Some((few, _)), .. }) = Search::new(&map, step, (part, stored), given, level)
