@@ -117,7 +117,7 @@ impl<'a> Map<'a> {
         let starts: Vec<usize> = (0..self.kept).step_by(chunk).collect();
         let parts: Vec<Part> =
             starts.into_par_iter().map(|start| self.part(start..start + chunk, level, step)).collect();
-        let times = step as f64;
+        let (times, leaves) = (step as f64, parts.iter().any(|part| part.leaves));
         let reached = times * parts.iter().map(|part| part.reached).sum::<f64>();
         let mut worst = Worst { cut: 0.0, single: PER_WEIGHT, reached };
         for cell in finest(parts) {
@@ -125,15 +125,20 @@ impl<'a> Map<'a> {
             let additions = HALF_A_UNIT * (times * cell.count - 1.0).max(0.0) * cell.sum;
             worst.single = worst.single.max(times * (cell.off + additions));
         }
-        if worst.cut > 0.0 {
-            worst.cut += FAR * self.budget;
+        if leaves {
+            worst.cut += self.far(level);
         }
         worst
     }
 
+    /// What all ghosts together may be where none of them counts.
+    fn far(&self, level: f64) -> f64 {
+        (FAR * self.budget).min(level)
+    }
+
     /// Some of the ghosts, counted group by group, each standing for `step` of them.
     fn part(&self, range: Range<usize>, level: f64, step: usize) -> Part {
-        let mut part = Part::new(self.problem.frame(), level, FAR * self.budget, self.kept);
+        let mut part = Part::new(self.problem.frame(), level, self.far(level), self.kept);
         let mut first = 0;
         for (group, &bell) in self.groups.iter().zip(&self.of_group) {
             let count = group.members.len();
@@ -194,6 +199,8 @@ struct Part {
     least: u32,
     levels: Vec<Level>,
     reached: f64,
+    /// Whether anything is left out of a ghost.
+    leaves: bool,
     columns: Vec<Along>,
     rows: Vec<Along>,
 }
@@ -216,7 +223,7 @@ struct Along {
 impl Part {
     /// Of a level, and of what all ghosts together may be where none of them counts.
     fn new(frame: Frame, level: f64, far: f64, kept: usize) -> Self {
-        let far = far.min(level) / kept as f64;
+        let far = far / kept as f64;
         let all = CELLS * (CLOSELY / kept as f64).min(1.0).sqrt();
         let along = (all / kept as f64).sqrt();
         let [of_size, of_end] =
@@ -228,7 +235,7 @@ impl Part {
         let most = kept.saturating_mul(MOST_FOR_EACH).clamp(MOST[0], MOST[1]) as u64;
         let least = (0..32).find(|&shift| cells(shift) <= most).unwrap_or(31);
         let (levels, columns, rows) = (Vec::new(), Vec::new(), Vec::new());
-        Self { frame, level, far, of_size, of_end, least, levels, reached: 0.0, columns, rows }
+        Self { frame, level, far, of_size, of_end, least, levels, reached: 0.0, leaves: false, columns, rows }
     }
 
     fn add(&mut self, ghost: &Ghost, weight: f64, slopes: &Slopes<'_>) {
@@ -243,7 +250,9 @@ impl Part {
         };
         let area = Area::new(ghost, self.level / weight, frame);
         let whole = Area::reach(slopes.shape, self.level / weight) >= slopes.ends;
-        self.reached += area.pixels(frame);
+        let pixels = area.pixels(frame);
+        self.reached += pixels;
+        self.leaves |= !(whole || pixels == window.pixels() as f64);
         let farthest = slopes.shape.reach(self.far / weight);
         let spans = [0, 1].map(|axis| {
             let last = f64::from(sides[axis]) - 1.0;
