@@ -1,0 +1,277 @@
+//! How a veil is summed on pictures of one size, and how far that is from what was wanted.
+//!
+//! The Gaussians of the mixture are dealt out by their widths: the widest to coarse lattices, narrower ones to finer lattices,
+//! the next to separable kernels on the pixels, and the narrowest to a small kernel that is not separable and holds, offset
+//! by offset, what is wanted less what the others realise. The plan tries several ways to deal, bounds the error of each, and takes the one with the fewest
+//! operations among those that meet the tolerance.
+//!
+//! # The bound
+//!
+//! Along one dimension a Gaussian on a lattice is realised as R(x, x + d), which depends on the offset d and on where x lies
+//! between two points of the lattice; its least and largest value over all such phases enclose it ([`lattice`]). Products of two
+//! such intervals, summed over the mixture, enclose the realised kernel at an offset; their distance from the wanted value, over
+//! that value, is the bound ([`samples`] says at which offsets). Rounding adds n u Σ |terms| over the wanted value, n the length
+//! of the longest chain of sums and u half the distance from 1 to the next float.
+
+mod choose;
+mod lattice;
+mod near;
+mod own;
+mod samples;
+
+pub(super) use lattice::{Lattice, kernel, weights};
+pub(super) use near::Near;
+pub(super) use own::{Own, PERIOD};
+
+use super::error::Error;
+use super::evaluate::{Pool, Workspace};
+use super::geometry::{Border, Geometry};
+use super::kernel::{Gaussian, Kernel};
+use super::sphere::{self, Camera, Sphere, Task, angle};
+use choose::{Chooser, Chosen};
+use samples::Samples;
+
+/// The longest side of a picture.
+pub const LONGEST_SIDE: usize = 1 << 16;
+
+/// Pixels up to which a picture of the sphere is summed directly, in milliseconds.
+const TINY: usize = 1 << 8;
+
+/// Pixels up to which it is where nothing else meets the tolerance, in a second or less.
+const SMALL: usize = 1 << 13;
+
+/// The error of a direct sum: of its rounding to 32 bits.
+const DIRECT: f64 = 1e-7;
+
+/// The share of the tolerance that is kept for what remains of a pixel's own light.
+pub(super) const OWN_SHARE: f64 = 0.05;
+
+/// A Gaussian that has found its place.
+#[derive(Debug, Clone)]
+pub(super) struct Placed {
+    /// Its value at 0, the pixel's weight included.
+    pub weight: f64,
+    /// Pixels from a point of its lattice to the next; 1 where it is a kernel on the pixels.
+    pub pitch: usize,
+    /// Its kernel on that lattice, from 0 on.
+    pub half: Vec<f64>,
+}
+
+/// What is summed.
+#[derive(Debug, Clone)]
+pub(super) struct Layers {
+    /// Separable kernels on the pixels.
+    pub direct: Vec<Placed>,
+    /// Those of each lattice, from pitch 2 on.
+    pub lattices: Vec<Vec<Placed>>,
+    /// What is missing near a source.
+    pub near: Near,
+    /// What arrives at the source itself.
+    pub own: Own,
+    /// What each source adds everywhere.
+    pub constant: f64,
+    /// What each source adds, times the square of the distance in pixels.
+    pub quadratic: f64,
+}
+
+/// What a plan promises and costs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Predicted {
+    /// Bound of the error relative to the local veil, rounding included; at most the tolerance.
+    pub bound: f64,
+    /// The part of it that is rounding.
+    pub rounding: f64,
+    /// Multiply-adds for each pixel of one channel.
+    pub operations: f64,
+    /// Gaussians that are summed on the pixels.
+    pub direct: usize,
+    /// Gaussians that are summed on each lattice, of pitch 2, 4, 8, … pixels.
+    pub lattices: Vec<usize>,
+    /// Gaussians that are left out: the narrow ones, which the small kernel takes, and those that this picture cannot show at its tolerance.
+    pub dropped: usize,
+    /// How far the small kernel reaches, in pixels; 0 where there is none.
+    pub reach: f64,
+}
+
+/// A way to sum a veil on pictures of one size.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    size: [usize; 2],
+    predicted: Predicted,
+    pub(super) way: Way,
+}
+
+/// How.
+#[derive(Debug, Clone)]
+pub(super) enum Way {
+    Plane(Box<Planar>),
+    Sphere(Box<Spherical>),
+    /// Every source at every pixel, for pictures so small that it is quick.
+    Direct(Geometry, Kernel),
+}
+
+/// On a plane.
+#[derive(Debug, Clone)]
+pub(super) struct Planar {
+    kernel: Kernel,
+    pitch: f64,
+    solid_angle: f64,
+    pub size: [usize; 2],
+    pub border: Border,
+    pub margin: [usize; 2],
+    pub tolerance: f64,
+    pub layers: Layers,
+    pub roundings: f64,
+    pub pool: Pool<Workspace>,
+}
+
+/// On the sphere.
+#[derive(Debug, Clone)]
+pub(super) struct Spherical {
+    pub kernel: Kernel,
+    pub camera: Camera,
+    pub tolerance: f64,
+    pub sphere: Sphere,
+    pub roundings: f64,
+}
+
+impl Plan {
+    /// The cheapest way that is known to sum the veil of `kernel` on pictures of `size` columns and rows to `tolerance`, relative to
+    /// the local veil or to [`super::FLOOR`] of the channel's largest.
+    ///
+    /// # Errors
+    /// A size, geometry or tolerance that is none; a kernel that is negative or no number on this picture; a tolerance that its
+    /// mixture or 32-bit floats do not reach.
+    pub fn new(
+        geometry: &Geometry,
+        kernel: &Kernel,
+        size: [usize; 2],
+        border: Border,
+        tolerance: f64,
+    ) -> Result<Self, Error> {
+        geometry.check(size, border)?;
+        let [width, height] = size;
+        if width == 0 || height == 0 || width.max(height) > LONGEST_SIDE {
+            return Err(Error::Size { width, height, most: LONGEST_SIDE });
+        }
+        if !(tolerance > 0.0 && tolerance < 1.0) {
+            return Err(Error::Tolerance(tolerance));
+        }
+        match (*geometry, geometry.camera(size)) {
+            (Geometry::Planar { pitch, solid_angle }, _) => {
+                Self::planar([pitch, solid_angle], kernel, size, border, tolerance)
+            }
+            (_, Some(camera)) => Self::spherical(geometry, camera, kernel, tolerance),
+            _ => Err(Error::Geometry("this geometry has no camera".into())),
+        }
+    }
+
+    fn planar(
+        [pitch, solid_angle]: [f64; 2],
+        kernel: &Kernel,
+        size: [usize; 2],
+        border: Border,
+        tolerance: f64,
+    ) -> Result<Self, Error> {
+        let margin = if border == Border::None { [0, 0] } else { size };
+        let most = [0, 1].map(|side| size[side] - 1 + margin[side]);
+        let pixels = (size[0] + 2 * margin[0]) * (size[1] + 2 * margin[1]);
+        let samples = Samples::new(|distance| solid_angle * kernel.at(pitch * distance), most, pixels);
+        for sample in &samples.pairs {
+            check(sample.wanted / solid_angle, sample.distance() * pitch)?;
+        }
+        let mixture = kernel.mixture();
+        let scaled = |term: &Gaussian| Gaussian { sigma: term.sigma / pitch, weight: term.weight * solid_angle };
+        let mut terms: Vec<Gaussian> = mixture.terms.iter().filter(|term| term.weight > 0.0).map(scaled).collect();
+        terms.sort_by(|one, other| one.sigma.total_cmp(&other.sigma));
+        let moments = [mixture.constant * solid_angle, mixture.quadratic * solid_angle * pitch * pitch];
+        let Chosen { layers, mut predicted, placed, roundings } =
+            Chooser::new(&samples, &terms, moments, most, tolerance).choose()?;
+        predicted.dropped = mixture.terms.len() - placed;
+        let pool = Pool::default();
+        let kernel = kernel.clone();
+        let planar = Planar { kernel, pitch, solid_angle, size, border, margin, tolerance, layers, roundings, pool };
+        Ok(Self { size, predicted, way: Way::Plane(Box::new(planar)) })
+    }
+
+    fn spherical(geometry: &Geometry, camera: Camera, kernel: &Kernel, tolerance: f64) -> Result<Self, Error> {
+        let size = camera.size;
+        let [first, last] = [camera.point(0.0, 0.0), camera.point(size[0] as f64 - 1.0, size[1] as f64 - 1.0)];
+        let (mut chord, longest) = (0.5 / camera.focal, first.chord(&last));
+        while chord < 1.03 * longest {
+            check(kernel.at(angle(chord)), angle(chord))?;
+            chord *= 1.03;
+        }
+        let pixels = size[0] * size[1];
+        if pixels <= TINY {
+            return Ok(Self::direct(geometry, kernel, size));
+        }
+        let mixture = kernel.mixture();
+        let profile = |angle: f64| kernel.at(angle);
+        let task = Task { camera, profile: &profile, mixture: &mixture.terms, constant: mixture.constant, tolerance };
+        let chosen = match sphere::choose(&task) {
+            Err(Error::OutOfReach { .. } | Error::Core { .. }) if pixels <= SMALL && tolerance > DIRECT => {
+                return Ok(Self::direct(geometry, kernel, size));
+            }
+            chosen => chosen?,
+        };
+        let predicted = Predicted {
+            bound: chosen.bound,
+            rounding: chosen.rounding,
+            operations: chosen.operations,
+            direct: 0,
+            dropped: mixture.terms.len().saturating_sub(chosen.lattices.iter().sum::<usize>()),
+            lattices: chosen.lattices,
+            reach: chosen.reach,
+        };
+        let spherical =
+            Spherical { kernel: kernel.clone(), camera, tolerance, sphere: chosen.sphere, roundings: chosen.roundings };
+        Ok(Self { size, predicted, way: Way::Sphere(Box::new(spherical)) })
+    }
+
+    fn direct(geometry: &Geometry, kernel: &Kernel, size: [usize; 2]) -> Self {
+        let predicted = Predicted {
+            bound: DIRECT,
+            rounding: DIRECT,
+            operations: (size[0] * size[1]) as f64,
+            direct: 0,
+            lattices: Vec::new(),
+            dropped: kernel.mixture().terms.len(),
+            reach: (size[0] as f64).hypot(size[1] as f64),
+        };
+        Self { size, predicted, way: Way::Direct(*geometry, kernel.clone()) }
+    }
+
+    /// What it promises and costs.
+    pub fn predicted(&self) -> &Predicted {
+        &self.predicted
+    }
+
+    /// Columns and rows of the pictures it is for.
+    pub fn size(&self) -> [usize; 2] {
+        self.size
+    }
+}
+
+impl Planar {
+    /// What a pixel of light 1 should send to another, `distance` pixels apart.
+    pub fn wanted(&self, distance: f64) -> f64 {
+        self.solid_angle * self.kernel.at(self.pitch * distance)
+    }
+}
+
+impl Spherical {
+    /// What a pixel of light 1 should send to another.
+    pub fn wanted(&self, from: [usize; 2], to: [usize; 2]) -> f64 {
+        let [from, to] = [from, to].map(|at| self.camera.point(at[0] as f64, at[1] as f64));
+        from.solid_angle * self.kernel.at(angle(from.chord(&to)))
+    }
+}
+
+/// Whether a kernel may have this value at an angle or a distance.
+fn check(value: f64, at: f64) -> Result<(), Error> {
+    if value.is_finite() && value >= 0.0 {
+        return Ok(());
+    }
+    Err(Error::Kernel(format!("the kernel of a veil is a number that is not negative, and not {value} at {at}")))
+}
