@@ -69,3 +69,30 @@ pub enum Mix {
     /// From the pixels that are lights: what scatters is missing there
     Energy,
 }
+
+/// How a camera formed the picture: what angle lies between two pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "terminal", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+pub enum Projection {
+    /// r = F tan ψ, as nearly every lens: straight lines stay straight
+    Rectilinear,
+    /// r = F ψ: an equidistant fisheye
+    Fisheye,
+    /// A plane: angles are distances, which is right in the middle of a rectilinear picture only
+    Planar,
+}
+
+/// What lies beyond the picture's edges.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "terminal", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+pub enum Border {
+    /// Nothing, which sends no light
+    #[default]
+    None,
+    /// The picture again, turned over
+    Mirror,
+    /// The pixels at the edge, on and on
+    Extend,
+}

@@ -19,6 +19,8 @@
 //! | [`gpu`] | the plan's tables and passes on OpenGL 4.3; the only folder with `unsafe` |
 //! | [`renderer`] | the main path: spectrum → field → normalise → composite |
 //! | [`mod@reference`] | the definition of the field in f64, by direct sum and by direct series |
+//! | [`psf`] | what an eye or a lens scatters how far: point-spread functions, and their mixtures of Gaussians |
+//! | [`veil`] | photo, point-spread function → the veil of every pixel, with its bound |
 //! | [`compare`], [`certificate`] | the one error metric, and a rendered field held against the definition |
 //! | [`job`] | a look laid over a photo: find, plan, render, certify |
 //! | [`measure`] | arms timed in turns, and their ratios |
@@ -67,6 +69,7 @@ pub mod photo;
 pub mod plan;
 mod printable;
 pub mod problem;
+pub mod psf;
 pub mod reference;
 pub mod renderer;
 pub mod scene;
@@ -74,6 +77,7 @@ pub mod series;
 mod target;
 #[cfg(feature = "terminal")]
 pub mod terminal;
+pub mod veil;
 #[cfg(feature = "window")]
 pub mod viewer;
 

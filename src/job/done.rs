@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::{Planning, Stages};
+use super::{Planning, Stages, Veiled};
+use crate::Result;
 use crate::certificate::Certificate;
 use crate::gpu::{Info, PassTime};
 use crate::look::{Gathered, Look};
@@ -26,6 +27,8 @@ pub struct Done<'a> {
     pub glare: Option<Photo>,
     /// How the glare was computed, where there is any.
     pub computed: Option<Computed>,
+    /// The veil, where there is one.
+    pub veiled: Option<Veiled>,
     /// How long each stage took, from reading on.
     pub stages: Stages,
     /// What a person ought to know.
@@ -47,6 +50,15 @@ pub struct Computed {
 }
 
 impl Done<'_> {
+    /// An error where the glare, or the veil, is further from the truth than was asked.
+    ///
+    /// # Errors
+    /// [`Error::ToleranceMissed`](crate::Error::ToleranceMissed).
+    pub fn check(&self) -> Result<()> {
+        self.computed.as_ref().map_or(Ok(()), |computed| computed.certificate.check())?;
+        self.veiled.as_ref().map_or(Ok(()), |veiled| veiled.error.check())
+    }
+
     /// Says so where the picture has values beyond `largest`, which is what its file holds.
     pub fn beyond(&self, largest: f32) -> Option<String> {
         let beyond = |pixel: &&[f32; 4]| pixel[..3].iter().any(|value| value.abs() > largest || value.is_nan());

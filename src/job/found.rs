@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::{Computer, Done, Planned, Stages, Step, Wanted, Watch, bright_light, plan, settings};
+use super::planned::stays_finite;
+use super::{Computer, Done, Planned, Stages, Step, Wanted, Watch, bright_light, plan, settings, veil};
 use crate::Result;
 use crate::look::{Gathered, Look, Search};
 use crate::photo::{self, BadPixels, Facts, Photo};
@@ -64,7 +65,7 @@ impl<'a> Found<'a> {
     pub fn compute(self, computer: Option<&mut Computer>, wanted: Wanted, watch: &impl Watch) -> Result<Done<'a>> {
         match computer.filter(|_| self.look.renders()) {
             Some(computer) => self.plan(computer, watch)?.render(computer, wanted, watch),
-            None => Ok(self.without_glare(wanted)),
+            None => self.without_ghosts(wanted, watch),
         }
     }
 
@@ -84,12 +85,25 @@ impl<'a> Found<'a> {
         Ok(Planned { found: self, planning, info: computer.info.clone() })
     }
 
-    /// The photo as it is, and black glare.
-    fn without_glare(self, wanted: Wanted) -> Done<'a> {
-        let Self { look, photo, facts, bad, scene, stages, warnings, settings: _ } = self;
+    /// The photo with its veil, where it has one, or as it is, and black glare.
+    fn without_ghosts(self, wanted: Wanted, watch: &impl Watch) -> Result<Done<'a>> {
+        let Self { look, photo, facts, bad, scene, mut stages, mut warnings, settings: _ } = self;
+        let before = if bad.nan + bad.infinite > 0 { photo::not_finite(&photo.pixels) } else { 0 };
+        watch.begin(Step::Computing)?;
+        let cast = veil::cast(look, &photo, wanted.verify, &mut stages)?;
         let dark = || photo.companion(vec![[0.0, 0.0, 0.0, 1.0]; photo.frame.window.pixels()]);
-        let glare = wanted.glare.then(dark);
-        let picture = wanted.picture.then(|| Arc::unwrap_or_clone(photo));
-        Done { look, facts, bad, scene, picture, glare, computed: None, stages, warnings }
+        let mut glare = wanted.glare.then(dark);
+        if let (Some(cast), Some(glare)) = (&cast, &mut glare) {
+            cast.add_to(&mut glare.pixels);
+        }
+        let change = cast.as_ref().map(|cast| cast.change(&photo.pixels));
+        let mut picture = wanted.picture.then(|| Arc::unwrap_or_clone(photo));
+        if let (Some(change), Some(picture)) = (change, &mut picture) {
+            stages.time("composite", || change.add_to(&mut picture.pixels));
+        }
+        stays_finite(picture.as_ref(), before, glare.as_ref(), 0)?;
+        let veiled = cast.map(|cast| cast.veiled);
+        warnings.extend(veiled.as_ref().and_then(|veiled| Some(veiled.error.check().err()?.to_string())));
+        Ok(Done { look, facts, bad, scene, picture, glare, computed: None, veiled, stages, warnings })
     }
 }

@@ -29,6 +29,7 @@ mod found;
 mod planned;
 mod planning;
 mod settings;
+mod veil;
 mod watch;
 
 use std::time::Instant;
@@ -44,6 +45,9 @@ pub use planned::Planned;
 pub(crate) use planning::request;
 pub use planning::{Planning, plan};
 pub use settings::{bright_light, settings};
+#[cfg(feature = "laboratory")]
+pub(crate) use veil::plan_of;
+pub use veil::{Ledger, NoSources, VeilError, Veiled};
 pub use watch::{Step, Unwatched, Watch};
 
 /// What is wanted. The picture does not depend on what else is.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Computed, Computer, Done, Found, Planning, Stages, Step, Wanted, Watch};
+use super::{Computed, Computer, Done, Found, Planning, Stages, Step, Wanted, Watch, veil};
 use crate::certificate::{Certificate, Verify};
 use crate::gpu::{Info, PassTime};
 use crate::photo::{self, Photo};
@@ -42,9 +42,15 @@ impl<'a> Planned<'a> {
         watch.begin(Step::Computing)?;
         let renderer = computer.renderer()?;
         renderer.field.set_timing(wanted.times);
+        let cast = veil::cast(look, &photo, wanted.verify, &mut stages)?;
+        // Of the photo as it is: the picture takes over its memory.
+        let change = cast.as_ref().map(|cast| cast.change(&photo.pixels));
         let drawn = draw(renderer, photo, &planning.plan, &settings, wanted, &mut stages);
         renderer.field.set_timing(false);
-        let Drawn { picture, glare, passes, measured_ms } = drawn?;
+        let Drawn { picture, mut glare, passes, measured_ms } = drawn?;
+        if let (Some(cast), Some(glare)) = (&cast, &mut glare) {
+            cast.add_to(&mut glare.pixels);
+        }
 
         let certificate = certify(renderer, &planning.plan, wanted.verify, &mut stages, watch)?;
         if let Err(error) = certificate.check() {
@@ -53,13 +59,18 @@ impl<'a> Planned<'a> {
         let picture = match picture {
             Some((mut picture, pending)) => {
                 renderer.collect(pending, &mut picture.pixels)?;
+                if let Some(change) = &change {
+                    change.add_to(&mut picture.pixels);
+                }
                 Some(picture)
             }
             None => None,
         };
-        stays_finite(picture.as_ref(), before, glare.as_ref(), &certificate)?;
+        stays_finite(picture.as_ref(), before, glare.as_ref(), certificate.not_finite)?;
         let computed = Some(Computed { info, planning, certificate, passes, measured_ms });
-        Ok(Done { look, facts, bad, scene, picture, glare, computed, stages, warnings })
+        let veiled = cast.map(|cast| cast.veiled);
+        warnings.extend(veiled.as_ref().and_then(|veiled| Some(veiled.error.check().err()?.to_string())));
+        Ok(Done { look, facts, bad, scene, picture, glare, computed, veiled, stages, warnings })
     }
 }
 
@@ -122,14 +133,14 @@ fn certify(
 }
 
 /// An error where the picture is not finite though the photo is, but for `before` pixels, or where the glare is not.
-fn stays_finite(
+pub(super) fn stays_finite(
     picture: Option<&Photo>,
     before: usize,
     glare: Option<&Photo>,
-    certificate: &Certificate,
+    not_finite: usize,
 ) -> Result<()> {
     let count = |photo: Option<&Photo>| photo.map_or(0, |photo| photo::not_finite(&photo.pixels));
-    match count(picture).saturating_sub(before).max(count(glare)).max(certificate.not_finite) {
+    match count(picture).saturating_sub(before).max(count(glare)).max(not_finite) {
         0 => Ok(()),
         pixels => Err(Error::NotFinite { pixels }),
     }

@@ -22,7 +22,7 @@ pub fn settings(
     #[rustfmt::skip]
     let &Look {
         strength, mix, normalize,
-        description: _, lens: _, axis: _, size: _, tint: _, lights: _, ghosts: _, find: _, accuracy: _,
+        description: _, lens: _, axis: _, size: _, tint: _, lights: _, ghosts: _, find: _, veil: _, accuracy: _,
     } = look;
     let mut settings = Settings { strength, normalize, emission: Emission::of(photo), ..Settings::default() };
     if mix == Mix::Add {

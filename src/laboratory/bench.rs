@@ -12,6 +12,7 @@ mod random;
 mod report;
 pub(in crate::laboratory) mod scenes;
 mod stage;
+mod veil;
 
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -76,8 +77,12 @@ pub struct Args {
     #[arg(long, conflicts_with_all = ["gaussians", "scenes", "local"])]
     digits: bool,
 
+    /// Measure nothing but veils, every pixel a source, against a copy
+    #[arg(long, conflicts_with_all = ["gaussians", "scenes", "local", "digits"])]
+    veil: bool,
+
     /// Measure nothing but frames of the window, without a window: a slider and a light that are dragged
-    #[arg(long, conflicts_with_all = ["gaussians", "scenes", "local", "digits", "rounds", "quick"])]
+    #[arg(long, conflicts_with_all = ["gaussians", "scenes", "local", "digits", "veil", "rounds", "quick"])]
     viewer: bool,
 
     /// Write the rows of all tables to this file too
@@ -111,6 +116,7 @@ Examples:
   vglare bench --gaussians 1000 --json 1000.json
   vglare bench --scenes 200 --size 480x270  How good are the plan's choices and its predictions?
   vglare bench --digits --strict            What do the digits beyond 32-bit floats cost?
+  vglare bench --veil                       What does a veil cost?
   vglare bench --viewer --strict            Are drags in the window fluent here?";
 
 fn part(text: &str) -> Result<f64, String> {
@@ -188,6 +194,10 @@ fn measure(args: &Args, window: Window) -> Result<Report> {
         digits::in_doubles(&stage, &mut report)?;
         return Ok(report);
     }
+    if args.veil {
+        veil::against_a_copy(&stage, &mut report)?;
+        return Ok(report);
+    }
     if args.viewer {
         window(stage.shared_device(), size, &mut report)?;
         return Ok(report);
@@ -196,6 +206,7 @@ fn measure(args: &Args, window: Window) -> Result<Report> {
     cases::default_path(&stage, &mut report)?;
     local::against_a_copy(&stage, &mut report)?;
     digits::in_doubles(&stage, &mut report)?;
+    veil::against_a_copy(&stage, &mut report)?;
     many::ghosts(&stage, &mut report, args.quick)?;
     if !args.quick {
         cases::rows_and_series(&stage, &mut report)?;

@@ -6,6 +6,7 @@
 //! | `page` | a page of results, and the folder that it lies in |
 //! | [`rex`] | the research prototype's experiments, as figures and numbers |
 //! | [`tradeoff`] | a photo and its ghosts → accuracy against time, measured here |
+//! | [`psf`] | a point-spread function → its transform and its mixture of Gaussians |
 //! | [`harmonics`] | a photo → its spherical harmonic coefficients |
 //! | [`mod@bench`] | what each pass costs here, as ratios |
 //! | [`calibrate`] | the cost model of plans, fitted to this machine |
@@ -15,5 +16,6 @@ pub mod calibrate;
 pub mod chart;
 pub mod harmonics;
 mod page;
+pub mod psf;
 pub mod rex;
 pub mod tradeoff;

@@ -1,15 +1,17 @@
 //! Looks as scene files, and back.
 
-use super::{Accuracy, Look, LookLens, LookLights, Shared};
-use crate::Result;
+use super::{Accuracy, Look, LookLens, LookLights, Shared, Veil};
+use crate::choices::Mix;
 use crate::scene::presets::DEFAULT_PRESET;
 use crate::scene::{AccuracySection, FindOptions, FindSection, LookSection, SceneFile};
+use crate::{Error, Result};
 
 impl Look {
     /// The look that a scene file describes; what it leaves open is as by default.
     ///
     /// # Errors
-    /// [`crate::Error::UnknownPreset`] for a preset that there is not, which no file that was read names.
+    /// [`Error::UnknownPreset`] for a preset that there is not, which no file that was read names; [`Error::Usage`] for a veil that
+    /// cannot be had, as where a file that it names is gone.
     pub fn from_scene(scene: SceneFile) -> Result<Self> {
         // Ghosts alone are the whole scene: nothing then is looked for in the photo.
         let ghosts_only = !scene.ghosts.is_empty() && scene.lens_ghosts.is_empty() && scene.preset.is_none();
@@ -27,6 +29,8 @@ impl Look {
         };
         let LookSection { strength, size, tint, mix, normalize } = scene.look;
         let AccuracySection { goal, allow_floor, evaluator } = scene.accuracy;
+        let veil = scene.veil.map(|veil| Veil::new(&veil, mix == Some(Mix::Add))).transpose();
+        let veil = veil.map_err(|fault| Error::Usage(format!("the scene's veil: {fault}")))?;
         Ok(Self {
             description: scene.description,
             lens,
@@ -37,6 +41,7 @@ impl Look {
             ghosts: scene.ghosts.into(),
             find: scene.find.options(),
             strength: strength.unwrap_or(1.0),
+            veil,
             mix: mix.unwrap_or_default(),
             normalize: normalize.unwrap_or_default(),
             accuracy: Accuracy {
@@ -52,8 +57,10 @@ impl Look {
     /// The scene file that describes the look, with every value spelt out. The lens of a file becomes a table of the
     /// scene's own.
     pub fn to_scene(&self) -> SceneFile {
-        let Self { description, lens, axis, size, tint, lights, ghosts, find, strength, mix, normalize, accuracy } =
-            self;
+        #[rustfmt::skip]
+        let Self {
+            description, lens, axis, size, tint, lights, ghosts, find, strength, veil, mix, normalize, accuracy,
+        } = self;
         let (preset, lens_ghosts) = match lens {
             LookLens::Preset(lens) => (Some(lens.name.clone()), Vec::new()),
             LookLens::File(_, lens) => (None, lens.ghosts.clone()),
@@ -76,7 +83,8 @@ impl Look {
                 strength: Some(*strength),
                 size: Some(*size),
                 tint: Some(*tint),
-                mix: Some(*mix),
+                // To say of a veil that it is added is to say more than nothing.
+                mix: veil.as_ref().is_none_or(|veil| veil.adds || *mix != Mix::Add).then_some(*mix),
                 normalize: Some(*normalize),
             },
             find: FindSection {
@@ -87,6 +95,7 @@ impl Look {
                 add,
             },
             accuracy: AccuracySection { goal: Some(goal), allow_floor, evaluator },
+            veil: veil.as_ref().map(Veil::section),
             lights: listed,
             ghosts: ghosts.to_vec(),
             lens_ghosts,
@@ -99,8 +108,9 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
-    use crate::choices::{Evaluator, Mix, Normalize};
-    use crate::scene::{Ghost, Goal, Lens, Light, presets, read_scene, write_scene};
+    use crate::choices::{Evaluator, Normalize};
+    use crate::psf::{Name, Parameters};
+    use crate::scene::{Ghost, Goal, Lens, Light, VeilSection, presets, read_scene, write_scene};
     use crate::series::Bell;
 
     fn through_a_file(look: &Look) -> Look {
@@ -126,6 +136,7 @@ mod tests {
             ghosts: vec![ghost.clone()].into(),
             find: FindOptions { threshold: Some(3.5), merge: 0.1, max_lights: 5, firefly_limit: 20.0 },
             strength: 1.7,
+            veil: None,
             mix: Mix::Energy,
             normalize: Normalize::None,
             accuracy: Accuracy {
@@ -140,7 +151,15 @@ mod tests {
         // Without the preset's name the ghost would be the whole scene.
         let ghost_and_photo = Look { ghosts: vec![ghost].into(), ..Look::default() };
         let added = Look { lights: LookLights::FoundAnd(vec![light].into()), ..Look::default() };
-        for look in [Look::default(), full.clone(), none, ghost_and_photo, added] {
+        let section = VeilSection {
+            parameters: Parameters { age: Some(60.0), ..Parameters::new(Name::Cie) },
+            fov: Some(50.0),
+            projection: None,
+            border: None,
+            tolerance: Some(0.02),
+        };
+        let veiled = |adds| Look { veil: Some(Veil::new(&section, adds).unwrap()), ..Look::default() };
+        for look in [Look::default(), full.clone(), none, ghost_and_photo, added, veiled(false), veiled(true)] {
             assert_eq!(through_a_file(&look), look);
         }
         let filed =

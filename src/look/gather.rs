@@ -55,12 +55,12 @@ impl Look {
 
     /// Whether lights of the photo shine.
     pub fn finds(&self) -> bool {
-        !matches!(self.lights, LookLights::Listed(_))
+        !matches!(self.lights, LookLights::Listed(_)) && !self.lens.ghosts().is_empty()
     }
 
-    /// Whether there is any glare to be rendered.
+    /// Whether there are any ghosts to be rendered: not through a lens without ghosts, which makes none of any light.
     pub fn renders(&self) -> bool {
-        self.strength != 0.0
+        self.strength != 0.0 && !(self.lens.ghosts().is_empty() && self.ghosts.is_empty())
     }
 
     /// Searches a photo for lights.

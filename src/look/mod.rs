@@ -3,6 +3,7 @@
 mod file;
 mod gather;
 mod shared;
+mod veil;
 
 use std::borrow::Cow;
 use std::path::PathBuf;
@@ -17,6 +18,7 @@ use crate::scene::{FindOptions, Ghost, Goal, Lens, LensGhost, Light};
 
 pub use gather::{Gathered, Search};
 pub use shared::Shared;
+pub use veil::Veil;
 
 /// Everything that a person sets. The same look gives the same glare, whatever it was made from. A copy shares its lists,
 /// so that it costs little even of 100,000 lights.
@@ -40,7 +42,9 @@ pub struct Look {
     pub find: FindOptions,
     /// What the glare is multiplied by, 0 or more; 0 leaves the photo as it is.
     pub strength: f64,
-    /// Where the glare's light comes from.
+    /// What every pixel scatters; nothing where it is `None`.
+    pub veil: Option<Veil>,
+    /// Where the ghosts' light comes from.
     pub mix: Mix,
     /// How the field's values become glare.
     pub normalize: Normalize,
@@ -98,6 +102,7 @@ impl Default for Look {
             ghosts: Shared::default(),
             find: FindOptions::default(),
             strength: 1.0,
+            veil: None,
             mix: Mix::default(),
             normalize: Normalize::default(),
             accuracy: Accuracy::default(),

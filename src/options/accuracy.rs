@@ -15,7 +15,8 @@ use crate::scene::Goal;
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Accuracy")]
 pub struct AccuracyArgs {
-    /// Largest error at any pixel, relative to the largest glare of the same colour [default: 0.001]
+    /// Largest error at any pixel, relative to the largest glare of the same colour [default: 0.001]; of a veil, relative to
+    /// itself at that pixel [default: 0.01]
     #[arg(long, value_name = "E", value_parser = tolerance)]
     tolerance: Option<f64>,
 
@@ -67,6 +68,11 @@ impl CalibrationArgs {
 }
 
 impl AccuracyArgs {
+    /// The tolerance, where it is given.
+    pub fn tolerance(&self) -> Option<f64> {
+        self.tolerance
+    }
+
     /// What is given wins over what was set before.
     pub fn over(&self, set: Accuracy) -> Accuracy {
         let tolerance = self.tolerance.map(Goal::Tolerance);

@@ -29,7 +29,11 @@ pub fn command_line(look: &Look, photo: &Path, output: &Path, file: Option<&Path
 
 /// Whether there are no options that say the same.
 fn needs_file(look: &Look) -> bool {
-    matches!(look.lens, LookLens::Own(_)) || look.lights != LookLights::Found || !look.ghosts.is_empty()
+    // A veil has many options, and a file says them all.
+    matches!(look.lens, LookLens::Own(_))
+        || look.veil.is_some()
+        || look.lights != LookLights::Found
+        || !look.ghosts.is_empty()
 }
 
 /// A path as a word that is no option.
@@ -43,8 +47,10 @@ fn options(look: &Look) -> Result<Vec<String>> {
     let default = Look::default();
     let mut options = Options::default();
     // All fields by name: one that is added does not compile until it is an option, or said by a file.
-    let Look { description: _, lens, axis, size, tint, lights: _, ghosts: _, find, strength, mix, normalize, accuracy } =
-        look;
+    #[rustfmt::skip]
+    let Look {
+        description: _, lens, axis, size, tint, lights: _, ghosts: _, find, strength, veil: _, mix, normalize, accuracy,
+    } = look;
     match lens {
         LookLens::File(path, _) => options.add("--lens", word(path)?),
         LookLens::Preset(preset) if *lens != default.lens => options.add("--preset", &preset.name),

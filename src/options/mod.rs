@@ -5,12 +5,16 @@ mod backend;
 mod command_line;
 mod find;
 pub(crate) mod numbers;
+pub(crate) mod psf;
 mod reading;
 mod scene;
+mod veil;
 
 pub use accuracy::{AccuracyArgs, CalibrationArgs};
 pub use backend::BackendChoice;
 pub use command_line::command_line;
 pub use find::FindArgs;
+pub use psf::PsfArgs;
 pub use reading::ReadArgs;
 pub use scene::SceneArgs;
+pub use veil::VeilArgs;

@@ -11,6 +11,7 @@ use crate::Result;
 use crate::look::{Look, LookLens, LookLights};
 use crate::options::numbers::point;
 use crate::scene;
+use crate::scene::presets::NO_LENS;
 
 /// What glares.
 #[derive(Debug, clap::Args)]
@@ -25,7 +26,7 @@ pub struct SceneArgs {
     #[arg(long, value_name = "NAME", conflicts_with = "lens")]
     preset: Option<String>,
 
-    /// The lens, from a file of [[lens_ghost]] tables
+    /// The lens, from a file of [[lens_ghost]] tables; `none` for one without ghosts
     #[arg(long, value_name = "FILE")]
     lens: Option<PathBuf>,
 
@@ -59,7 +60,11 @@ impl SceneArgs {
             Some(path) => Look::from_scene(scene::read_scene(path)?)?,
             None => Look::default(),
         };
-        if let Some(path) = &self.lens {
+        if let Some(path) = &self.lens
+            && path.as_os_str() == NO_LENS
+        {
+            look.lens = LookLens::preset(NO_LENS)?;
+        } else if let Some(path) = &self.lens {
             look.lens = LookLens::File(path.clone(), scene::read_lens(path)?.into());
         } else if let Some(name) = &self.preset {
             look.lens = LookLens::preset(name)?;

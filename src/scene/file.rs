@@ -21,6 +21,11 @@
 //! firefly_limit = 1000        # a pixel that outshines its neighbours by more is no light; 0 takes it
 //! add = false                 # whether the file's lights are added to the photo's
 //!
+//! [veil]                      # every pixel a source; docs/scenes.md has the functions and their keys
+//! psf = "cie"
+//! age = 60
+//! fov = 50                    # degrees across the picture's width
+//!
 //! [accuracy]
 //! tolerance = 1e-3            # between 0 and 1; or budget = 20.0, in milliseconds
 //! allow_floor = false
@@ -62,6 +67,7 @@ use super::lens::Lens;
 use super::number::plain;
 use super::sections::{AccuracySection, AccuracyTable, FindSection, LookSection};
 use super::tables::{LensTable, LightsJson, LightsTable, SceneTable};
+use super::veil::{self, VeilSection};
 use super::{Ghost, LensGhost, Light};
 use crate::{Error, Result};
 
@@ -84,6 +90,8 @@ pub struct SceneFile {
     pub find: FindSection,
     /// How exact the glare is to be.
     pub accuracy: AccuracySection,
+    /// What every pixel scatters; nothing where it is `None`.
+    pub veil: Option<VeilSection>,
     /// Lights, in the file's order; `None` where it leaves them to the photo, and empty for `light = []`.
     pub lights: Option<Vec<Light>>,
     /// Ghosts that no light makes.
@@ -120,6 +128,7 @@ pub(super) fn parse_scene(path: &Path, text: &str) -> Result<SceneFile> {
         look: table.look,
         find: table.find,
         accuracy: accuracy.unwrap_or_default(),
+        veil: table.veil.map(|veil| veil::section(path, veil)).transpose().map_err(located)?,
         lights: table.lights.map(converted),
         ghosts: ghosts.collect::<Result<_, _>>().map_err(located)?,
         lens_ghosts: lens_ghosts.collect::<Result<_, _>>().map_err(located)?,

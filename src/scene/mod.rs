@@ -17,6 +17,7 @@ mod regions;
 mod sections;
 mod tables;
 pub mod threshold;
+mod veil;
 mod write;
 
 pub use emission::{Emission, is_light};
@@ -25,6 +26,7 @@ pub use find::{FindOptions, Found, find};
 pub use lens::{Lens, ghosts};
 pub(crate) use referred::referred;
 pub use sections::{AccuracySection, FindSection, Goal, LookSection};
+pub use veil::{VeilFunction, VeilSection, absolute, check_fov};
 pub(crate) use write::checked_toml;
 pub use write::{to_toml, write_scene};
 

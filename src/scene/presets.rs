@@ -40,12 +40,18 @@ pub fn all() -> &'static [Preset] {
     &PRESETS
 }
 
-/// The lens of the preset that is called `name`.
+/// No lens: one without ghosts, for a veil alone.
+pub const NO_LENS: &str = "none";
+
+/// The lens of the preset that is called `name`, or [`NO_LENS`].
 ///
 /// # Errors
 ///
 /// [`Error::UnknownPreset`], which lists the names there are.
 pub fn named(name: &str) -> Result<Lens> {
+    if name == NO_LENS {
+        return Ok(Lens { name: name.to_owned(), description: "No ghosts.".to_owned(), ghosts: Vec::new() });
+    }
     find(name)?.lens()
 }
 

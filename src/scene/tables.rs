@@ -25,6 +25,7 @@ pub(super) struct SceneTable {
     #[serde(default)]
     pub find: FindSection,
     pub accuracy: Option<AccuracyTable>,
+    pub veil: Option<Spanned<toml::Table>>,
     #[serde(default, rename = "profile")]
     pub profiles: Vec<ProfileTable>,
     #[serde(rename = "light")]
@@ -124,7 +125,7 @@ impl SceneTable {
         if !self.lens_ghosts.is_empty() {
             return Err(fault("expected either `preset` or [[lens_ghost]], found both".into()));
         }
-        presets::find(preset.as_ref()).map_err(|error| fault(error.to_string()))?;
+        presets::named(preset.as_ref()).map_err(|error| fault(error.to_string()))?;
         Ok(Some(preset.as_ref().clone()))
     }
 }

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::file::parse_scene;
 use super::sections::{FindSection, Goal, LookSection};
-use super::{Ghost, LensGhost, Light, SceneFile};
+use super::{Ghost, LensGhost, Light, SceneFile, VeilSection};
 use crate::choices::Evaluator;
 use crate::series::{Bell, Profile};
 use crate::{Error, Result, target};
@@ -49,6 +49,7 @@ pub fn to_toml(scene: &SceneFile) -> String {
         look: (scene.look != LookSection::default()).then_some(scene.look),
         find: (scene.find != FindSection::default()).then_some(scene.find),
         accuracy: AccuracyOut::of(scene),
+        veil: scene.veil.as_ref(),
         lens_ghost: scene.lens_ghosts.iter().map(|ghost| LensGhostOut::new(ghost, &mut profiles)).collect(),
         ghost: scene.ghosts.iter().map(|ghost| GhostOut::new(ghost, &mut profiles)).collect(),
         profile: profiles.tables(),
@@ -74,6 +75,8 @@ struct SceneOut<'a> {
     find: Option<FindSection>,
     #[serde(skip_serializing_if = "Option::is_none")]
     accuracy: Option<AccuracyOut>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    veil: Option<&'a VeilSection>,
     #[serde(skip_serializing_if = "Option::is_none")]
     light: Option<Vec<LightOut>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]

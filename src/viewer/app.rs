@@ -37,6 +37,9 @@ pub(super) use files::LookFile;
 use memory::Budget;
 pub use memory::PIXEL_BYTES;
 
+/// What a look says that the window does not show.
+const VEIL_UNSEEN: &str = "the look has a veil: the window shows its ghosts only, and saves pictures with the veil";
+
 /// Milliseconds of plan, spectrum, composite and view from which on a drag is shown by previews.
 const SLOW: f64 = 33.0;
 /// For how long nothing must change before a preview is replaced while the pointer still holds on, in seconds.
@@ -272,7 +275,11 @@ impl App {
                     for note in &document.photo.source.notes {
                         self.notice(format!("{}: {note}", document.path.display()));
                     }
+                    let veiled = document.look.veil.is_some();
                     self.add(document);
+                    if veiled {
+                        self.notice(VEIL_UNSEEN.to_owned());
+                    }
                     // While many are read, those before are let go of as the next come in.
                     self.keep_within_budget();
                 }

@@ -19,6 +19,7 @@ mod targets;
 mod terminal;
 mod tradeoff;
 mod unchanged;
+mod veil;
 mod view;
 
 use std::path::{Path, PathBuf};

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// Modules that know nothing of GL, windows and the command line.
-const PURE: [&str; 12] = [
+const PURE: [&str; 14] = [
     "choices",
     "compare",
     "error",
@@ -12,9 +12,11 @@ const PURE: [&str; 12] = [
     "photo",
     "plan",
     "problem",
+    "psf",
     "reference",
     "scene",
     "series",
+    "veil",
     "viewer/model",
 ];
 /// What they do not know: modules, and other crates.

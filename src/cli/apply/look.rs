@@ -20,7 +20,8 @@ pub struct LookArgs {
     #[arg(long, value_name = "R,G,B", value_parser = colour)]
     tint: Option<[f64; 3]>,
 
-    /// Whether the glare's light is added, or taken from the photo's lights [default: add]
+    /// Whether the ghosts' light is added, or taken from the photo's lights [default: add]. A veil takes its light from every
+    /// pixel, unless `add` is asked for
     #[arg(long, value_enum)]
     mix: Option<Mix>,
 
@@ -38,6 +39,11 @@ impl LookArgs {
             strength: strength.unwrap_or(look.strength),
             size: size.unwrap_or(look.size),
             tint: tint.unwrap_or(look.tint),
+            // Who asks to add means the veil, too, which would take its light from the photo.
+            veil: look.veil.map(|veil| match mix {
+                Some(mix) => veil.adding(mix == Mix::Add),
+                None => veil,
+            }),
             mix: mix.unwrap_or(look.mix),
             normalize: normalize.unwrap_or(look.normalize),
             ..look

@@ -23,6 +23,7 @@ use crate::options::AccuracyArgs;
 use crate::options::FindArgs;
 use crate::options::ReadArgs;
 use crate::options::SceneArgs;
+use crate::options::VeilArgs;
 use crate::options::numbers::finite;
 use crate::photo::{Depth, ToneMap};
 use crate::{Result, limits};
@@ -80,6 +81,9 @@ pub struct Args {
     scene: SceneArgs,
 
     #[command(flatten)]
+    veil: VeilArgs,
+
+    #[command(flatten)]
     find: FindArgs,
 
     #[command(flatten)]
@@ -101,6 +105,7 @@ Examples:
   vglare apply night.exr -o veiled.exr --preset vintage-uncoated --strength 1.5
   vglare apply night.exr -o veiled.exr --glare glare.exr --report report.json
   vglare apply night.exr -o veiled.exr --scene scene.toml --tolerance 1e-4 --strict
+  vglare apply night.exr -o veiled.exr --veil cie --age 60 --fov 50 --projection planar --lens none
   vglare apply night.exr -o veiled.exr --budget 20 --verify full
   vglare apply night.exr --glare glare.exr --depth half
   vglare apply shot.*.exr -o veiled/ --threshold 20
@@ -113,7 +118,7 @@ impl Args {
     /// # Errors
     /// Those of [`SceneArgs::look`].
     pub fn look(&self) -> Result<Look> {
-        let look = self.look.over(self.scene.look()?);
+        let look = self.look.over(self.veil.over(self.scene.look()?, self.accuracy.tolerance())?);
         let (find, accuracy) = (self.find.over(look.find), self.accuracy.over(look.accuracy));
         Ok(Look { find, accuracy, ..look })
     }

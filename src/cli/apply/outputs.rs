@@ -193,7 +193,7 @@ fn apart(args: &Args, frames: &[Paths]) -> Result<()> {
             _ => {}
         }
     }
-    for path in args.scene.files() {
+    for path in args.scene.files().into_iter().chain(args.veil.files().cloned()) {
         let option = match maker(&path) {
             None => continue,
             Some(None) => "--report",

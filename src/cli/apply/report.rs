@@ -9,7 +9,7 @@ use crate::choices::{Mix, Normalize};
 use crate::cli::lights::FirefliesJson;
 use crate::cli::plan::CostModelReport;
 use crate::gpu::{Info, PassTime};
-use crate::job::{Computed, Done};
+use crate::job::{Computed, Done, Veiled};
 use crate::look::{Gathered, Look};
 use crate::photo::{BadKind, Facts};
 use crate::plan::Plan;
@@ -28,6 +28,7 @@ pub struct Report<'a> {
     tint: [f64; 3],
     normalize: Normalize,
     mix: Mix,
+    veil: Option<&'a Veiled>,
     plan: Option<&'a Plan>,
     cost: Option<CostReport<'a>>,
     notes: &'a [String],
@@ -119,6 +120,7 @@ impl<'a> Report<'a> {
             ghosts: _,
             find: _,
             strength,
+            veil: _,
             mix,
             normalize,
             accuracy,
@@ -135,6 +137,7 @@ impl<'a> Report<'a> {
             tint,
             normalize,
             mix,
+            veil: work.veiled.as_ref(),
             plan: computed.map(|computed| &computed.planning.plan),
             cost: computed.map(|computed| cost_report(computed, accuracy.goal)),
             notes: computed.map_or(&[], |computed| &computed.planning.notes),

@@ -40,10 +40,7 @@ fn single(args: &Args, paths: &Paths) -> Result<()> {
     }
     drop(progress);
     summary::print(&job)?;
-    match &job.work.computed {
-        Some(computed) if args.proof.strict => computed.certificate.check(),
-        _ => Ok(()),
-    }
+    if args.proof.strict { job.work.check() } else { Ok(()) }
 }
 
 /// Reads the photo while the GL context opens: neither needs the other, and both take a while. Where memory is limited,

@@ -8,7 +8,7 @@ use crate::Result;
 use crate::certificate::Verify;
 use crate::cli::found;
 use crate::cli::plan::text;
-use crate::job::{Computed, Done};
+use crate::job::{Computed, Done, Veiled};
 use crate::look::{Gathered, Look, LookLights};
 use crate::photo::Facts;
 use crate::scene::Found;
@@ -23,6 +23,10 @@ pub fn print(job: &Job<'_, Done<'_>>) -> Result<()> {
     stdout::print(|out| {
         about_photo(out, job)?;
         about_scene(out, &job.work.scene, job.work.look)?;
+        if let Some(veiled) = &job.work.veiled {
+            about_veil(out, veiled)?;
+            veiled.notes.iter().try_for_each(|note| writeln!(out, "note     {note}"))?;
+        }
         if let Some(computed) = &job.work.computed {
             about_plan(out, job, computed)?;
             computed.planning.notes.iter().try_for_each(|note| writeln!(out, "note     {note}"))?;
@@ -66,6 +70,9 @@ fn about_photo(out: &mut dyn Write, job: &Job<'_, Done<'_>>) -> io::Result<()> {
 
 /// What is light, and what it becomes.
 fn about_scene(out: &mut dyn Write, scene: &Gathered, look: &Look) -> io::Result<()> {
+    if look.lens.ghosts().is_empty() && scene.ghosts.is_empty() {
+        return writeln!(out, "lens     none, so no ghosts");
+    }
     let muted = match scene.lights.iter().filter(|light| light.muted).count() {
         0 => String::new(),
         muted => format!(", {muted} of them muted"),
@@ -102,6 +109,39 @@ fn about_found(out: &mut dyn Write, found: &Found, look: &Look) -> io::Result<()
         Some(fireflies) => writeln!(out, "         {fireflies}"),
         None => Ok(()),
     }
+}
+
+/// What every pixel scattered, how exactly, and what became of the light.
+fn about_veil(out: &mut dyn Write, veiled: &Veiled) -> io::Result<()> {
+    let Veiled { parameters, projection, fov, strength, scattered, terms, error, ledger, dark, .. } = veiled;
+    write!(out, "veil     {}", parameters.psf)?;
+    if let Some(fov) = fov {
+        write!(out, ", {fov}° across a {} picture", said(projection))?;
+    }
+    let mean = |values: [f64; 3]| values.into_iter().sum::<f64>() / 3.0;
+    writeln!(out, ": scatters {:.1} % of the light, by {terms} Gaussians", 100.0 * strength * mean(*scattered))?;
+    let share = |part: [f64; 3]| 100.0 * mean(part) / mean(ledger.light);
+    if mean(ledger.light) > 0.0 {
+        let [kept, inside, lost] = [ledger.kept, ledger.inside, ledger.lost].map(share);
+        writeln!(
+            out,
+            "light    {kept:.1} % stays, {inside:.1} % falls elsewhere in the picture, {lost:.1} % leaves it"
+        )?;
+    }
+    let dark: usize = dark.iter().sum();
+    if dark > 0 {
+        writeln!(out, "         {dark} samples have a veil below a billionth of the brightest, and are held to that")?;
+    }
+    writeln!(
+        out,
+        "error    of the veil, by its own brightness at each pixel: {:.1e} measured at {} pixels, {:.1e} predicted, {:.1e} asked",
+        error.measured, error.pixels, error.predicted, error.asked
+    )
+}
+
+/// A choice as it is written.
+fn said(choice: &impl std::fmt::Debug) -> String {
+    format!("{choice:?}").to_lowercase()
 }
 
 fn about_plan(out: &mut dyn Write, job: &Job<'_, Done<'_>>, computed: &Computed) -> io::Result<()> {

@@ -126,15 +126,19 @@ impl<'a> Tally<'a> {
     fn written(&mut self, job: &Job<'_, Done<'_>>) -> Result<()> {
         self.written += 1;
         self.bad += usize::from(job.work.bad.first.is_some());
-        if let Some(Computed { info, certificate: error, .. }) = &job.work.computed {
+        let Done { computed, veiled, .. } = &job.work;
+        let glare = computed.as_ref().map(|computed| (computed.certificate.measured, computed.certificate.asked));
+        let veil = veiled.as_ref().map(|veiled| (veiled.error.measured, veiled.error.asked));
+        if let Some(Computed { info, .. }) = computed {
             self.info.get_or_insert_with(|| info.clone());
-            self.measured += 1;
-            self.missed += usize::from(error.check().is_err());
+        }
+        self.measured += usize::from(glare.or(veil).is_some());
+        self.missed += usize::from(job.work.check().is_err());
+        for (measured, asked) in glare.into_iter().chain(veil) {
             // Not a number is worse than any, in this order.
-            let worse = |worst: &Worst| error.measured.abs().total_cmp(&worst.measured.abs()).is_gt();
+            let worse = |worst: &Worst| measured.abs().total_cmp(&worst.measured.abs()).is_gt();
             if self.worst.as_ref().is_none_or(worse) {
-                let photo = job.paths.input.clone();
-                self.worst = Some(Worst { photo, measured: error.measured, asked: error.asked });
+                self.worst = Some(Worst { photo: job.paths.input.clone(), measured, asked });
             }
         }
         if let Some(path) = &self.args.output_options.report {

@@ -29,14 +29,14 @@ pub(crate) fn open(folder: &Path, generator: &str, force: bool) -> Result<()> {
     target::make_folder(folder)
 }
 
-/// Writes a picture, in place of one that is there.
+/// Writes a picture, in place of one that is there if need be.
 ///
 /// # Errors
-/// [`Error::Write`] where it cannot be written.
-pub(crate) fn write_png(path: &Path, picture: &RgbImage) -> Result<()> {
+/// [`Error::Write`] where it cannot be written, [`Error::Exists`].
+pub(crate) fn write_png(path: &Path, picture: &RgbImage, overwrite: bool) -> Result<()> {
     let mut png = Cursor::new(Vec::new());
     picture.write_to(&mut png, ImageFormat::Png).map_err(|error| Error::write(path, error))?;
-    target::write(path, png.get_ref(), true)
+    target::write(path, png.get_ref(), overwrite)
 }
 
 type Reason = Box<dyn std::error::Error>;

@@ -67,7 +67,7 @@ fn write_figure(folder: &Path, figure: &Figure) -> Result<Vec<String>> {
         names.push(format!("{}.{extension}", figure.stem));
         folder.join(names.last().expect("pushed above"))
     };
-    write_png(&place("png"), &figure.picture)?;
+    write_png(&place("png"), &figure.picture, true)?;
     if let Some(svg) = &figure.svg {
         target::write_text(&place("svg"), svg, true)?;
     }

@@ -90,7 +90,7 @@ fn csv_of(points: &[Point]) -> Result<String, Box<dyn std::error::Error>> {
 /// PNG, SVG and the numbers.
 fn write_plot(folder: &Path, Plot { stem, chart, .. }: &Plot) -> Result<[String; 3]> {
     let names = ["png", "svg", "csv"].map(|extension| format!("{PLOTS}/{stem}.{extension}"));
-    write_png(&folder.join(&names[0]), &chart.picture()?)?;
+    write_png(&folder.join(&names[0]), &chart.picture()?, true)?;
     if let Some(svg) = chart.svg()? {
         target::write_text(&folder.join(&names[1]), &svg, true)?;
     }
@@ -103,7 +103,7 @@ fn write_looks(folder: &Path, results: &Results) -> Result<Files> {
     let looks = &results.looks;
     let picture = |name: &str, picture: &RgbImage| {
         let name = format!("{PICTURES}/{name}.png");
-        write_png(&folder.join(&name), picture).map(|()| name)
+        write_png(&folder.join(&name), picture, true).map(|()| name)
     };
     let maybe = |name: &str, found: &Option<RgbImage>| found.as_ref().map(|found| picture(name, found)).transpose();
     let mut files = Files {

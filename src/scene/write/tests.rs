@@ -1,6 +1,8 @@
 use super::*;
 use crate::chance::Chance;
+use crate::choices::{Border, Projection};
 use crate::choices::{Mix, Normalize};
+use crate::psf::{Name, Parameters};
 use crate::scene::{AccuracySection, read_scene};
 use crate::series::{Disc, SineGaussian, VonMises};
 
@@ -100,6 +102,13 @@ fn scene(chance: &mut Chance) -> SceneFile {
             allow_floor: one_of(chance, &[true, false]),
             evaluator: maybe(chance, |chance| one_of(chance, &Evaluator::ALL)),
         },
+        veil: maybe(chance, |chance| VeilSection {
+            parameters: Parameters { age: Some(60.5), scatter: Some(0.1), ..Parameters::new(Name::Cie) },
+            fov: Some(50.5),
+            projection: one_of(chance, &[None, Some(Projection::Fisheye)]),
+            border: one_of(chance, &[None, Some(Border::None)]),
+            tolerance: maybe(chance, |chance| chance.between(1e-4, 0.5)),
+        }),
         lights: maybe(chance, |chance| (0..some).map(|_| light(chance)).collect()),
         ghosts: bells.iter().map(|bell| ghost(chance, bell)).collect(),
         lens_ghosts: own.iter().map(|bell| lens_ghost(chance, bell)).collect(),

@@ -20,7 +20,10 @@ pub enum Work {
 /// What has to be done again for the picture of `new`, where that of `old` is there.
 pub fn work(old: &Look, new: &Look) -> Work {
     // All fields by name: one that is added does not compile until it has a step.
-    let Look { description: _, lens, axis, size, tint, lights, ghosts, find, strength, mix, normalize, accuracy } = new;
+    #[rustfmt::skip]
+    let Look {
+        description: _, lens, axis, size, tint, lights, ghosts, find, strength, veil, mix, normalize, accuracy,
+    } = new;
     // A search that found lights for `old` is the same for `new`, unless it goes by other rules.
     if new.searches() && !(old.searches() && old.find == *find) {
         return Work::Lights;
@@ -37,7 +40,7 @@ pub fn work(old: &Look, new: &Look) -> Work {
     if old.accuracy != *accuracy {
         return Work::Plan;
     }
-    if (old.strength, old.mix, old.normalize) == (*strength, *mix, *normalize) {
+    if (old.strength, &old.veil, old.mix, old.normalize) == (*strength, veil, *mix, *normalize) {
         Work::Nothing
     } else {
         Work::Composite

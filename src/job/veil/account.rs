@@ -1,0 +1,146 @@
+//! What is told of a veil: how it was computed, how exactly, and what became of the light.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::light;
+use crate::choices::{Border, Projection};
+use crate::look::Veil as Wanted;
+use crate::psf::Parameters;
+use crate::veil::{self, BadSources, Geometry};
+use crate::{Error, Result};
+
+/// How a veil was computed, and how exactly.
+#[derive(Debug, Clone, Serialize)]
+pub struct Veiled {
+    /// The function, and what it was given.
+    #[serde(flatten)]
+    pub parameters: Parameters,
+    /// How the picture was taken to be formed, degrees across its width, and what lies beyond it.
+    pub projection: Projection,
+    /// See `projection`.
+    pub fov: Option<f64>,
+    /// See `projection`.
+    pub border: Border,
+    /// s: what the veil was multiplied by.
+    pub strength: f64,
+    /// f: the share of the light that is scattered where the strength is 1, RGB.
+    pub scattered: [f64; 3],
+    /// k(0), per steradian or square of the function's unit, RGB.
+    pub centre: [f64; 3],
+    /// Gaussians of the mixture.
+    pub terms: usize,
+    /// How exact it is, relative to the local veil.
+    pub error: VeilError,
+    /// What a person ought to know: of a tolerance that could not be had.
+    pub notes: Vec<String>,
+    /// What became of the light.
+    pub ledger: Ledger,
+    /// Pixels whose veil is below a billionth of their channel's largest, RGB: they are held to that.
+    pub dark: [usize; 3],
+    /// Samples that are no source, RGB.
+    pub no_sources: NoSources,
+}
+
+/// Errors relative to the local veil.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct VeilError {
+    /// What was asked for.
+    pub asked: f64,
+    /// The bound that the plan has proved.
+    pub predicted: f64,
+    /// What was found against the direct sum in 64-bit floats.
+    pub measured: f64,
+    /// At how many pixels.
+    pub pixels: usize,
+}
+
+impl VeilError {
+    /// An error where the veil is further from the truth than was asked.
+    ///
+    /// # Errors
+    /// [`Error::ToleranceMissed`].
+    pub fn check(&self) -> Result<()> {
+        // Written so that a NaN would be an error too.
+        if self.measured <= self.asked {
+            return Ok(());
+        }
+        Err(Error::ToleranceMissed { asked: self.asked, measured: self.measured })
+    }
+}
+
+/// Where the light is, RGB: radiance times steradians, or times the square of the function's unit.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct Ledger {
+    /// What the photo holds; a negative sample holds none.
+    pub light: [f64; 3],
+    /// What its pixels keep.
+    pub kept: [f64; 3],
+    /// What falls on its other pixels.
+    pub inside: [f64; 3],
+    /// What leaves it.
+    pub lost: [f64; 3],
+}
+
+/// Samples that count as black, RGB.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct NoSources {
+    /// NaN.
+    pub nan: [usize; 3],
+    /// Infinite.
+    pub infinite: [usize; 3],
+    /// Negative.
+    pub negative: [usize; 3],
+}
+
+/// What each pixel loses of its own light: s (f − k(0) Ω).
+pub(super) struct Loss {
+    /// s f and s k(0), RGB.
+    shares: [[f64; 3]; 2],
+    geometry: Geometry,
+    size: [usize; 2],
+}
+
+impl Loss {
+    pub fn new(veil: &Wanted, geometry: Geometry, size: [usize; 2], strength: f64) -> Self {
+        let strength = if veil.adds { 0.0 } else { strength };
+        let shares = [veil.psf().energies(), veil.psf().centres()].map(|shares| shares.map(|share| strength * share));
+        Self { shares, geometry, size }
+    }
+
+    /// The solid angle, or the area, of a pixel, and what it loses, RGB.
+    pub fn at(&self, pixel: usize) -> (f64, [f64; 3]) {
+        let area = self.geometry.solid_angle(self.size, [pixel % self.size[0], pixel / self.size[0]]);
+        let [energies, centres] = self.shares;
+        (area, [0, 1, 2].map(|channel| energies[channel] - centres[channel] * area))
+    }
+}
+
+/// Adds up where the light is.
+pub(super) fn ledger(sources: &veil::Photo<'_>, planes: &[Vec<f32>; 3], loses: &Loss) -> Ledger {
+    let [width, height] = sources.size();
+    let row = |y: usize| {
+        let mut sums = [[0.0; 3]; 3];
+        for x in 0..width {
+            let (area, lost) = loses.at(y * width + x);
+            for channel in 0..3 {
+                let held = area * light(sources.value(channel, x, y));
+                sums[0][channel] += held;
+                sums[1][channel] += (1.0 - lost[channel]) * held;
+                sums[2][channel] += area * f64::from(planes[channel][y * width + x]);
+            }
+        }
+        sums
+    };
+    let add =
+        |a: [[f64; 3]; 3], b: [[f64; 3]; 3]| [0, 1, 2].map(|k| [0, 1, 2].map(|channel| a[k][channel] + b[k][channel]));
+    // Row by row in their order, so that a sum is the same every time.
+    let rows: Vec<_> = (0..height).into_par_iter().map(row).collect();
+    let [light, kept, inside] = rows.into_iter().fold([[0.0; 3]; 3], add);
+    Ledger { light, kept, inside, lost: [0, 1, 2].map(|channel| light[channel] - kept[channel] - inside[channel]) }
+}
+
+/// What of a photo was no source.
+pub(super) fn no_sources(BadSources { undefined, infinite, negative }: BadSources) -> NoSources {
+    NoSources { nan: undefined, infinite, negative }
+}

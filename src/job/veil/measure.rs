@@ -1,0 +1,93 @@
+//! A veil held against its definition.
+
+use rayon::prelude::*;
+
+use super::{failed, light};
+use crate::Result;
+use crate::certificate::Verify;
+use crate::chance::Chance;
+use crate::choices::Border;
+use crate::veil::{self, Geometry, Kernel, Plan};
+
+/// Products that measuring the error may cost: at some pixels, or where every one is asked for, which large photos have too many of.
+const EFFORT: [f64; 2] = [5e6, 2e10];
+/// Pixels that are measured at least.
+const FEWEST: usize = 6;
+
+/// Where the error is measured: the same places every time, spread by chance; the corners among them, and what is next to the
+/// brightest pixel, and not far from it.
+pub(super) fn looked_at([width, height]: [usize; 2], brightest: usize, verify: Verify) -> Vec<[usize; 2]> {
+    let all = width * height;
+    let effort = EFFORT[usize::from(verify == Verify::Full)];
+    let count = ((effort / all as f64) as usize).clamp(FEWEST, all.max(FEWEST)).min(all);
+    if count == all {
+        return (0..all).map(|pixel| [pixel % width, pixel / width]).collect();
+    }
+    let mut chance = Chance::new(all as u64);
+    let mut within = |side: usize| (chance.between(0.0, side as f64) as usize).min(side - 1);
+    let beside = |x: usize, y: usize| [(brightest % width + x).min(width - 1), (brightest / width + y).min(height - 1)];
+    let first = [[0, 0], [width - 1, height - 1], beside(1, 0), beside(5, 3)];
+    first.into_iter().chain((first.len()..count).map(|_| [within(width), within(height)])).collect()
+}
+
+/// The pixel of which a channel is brightest.
+pub(super) fn brightest(sources: &veil::Photo<'_>) -> usize {
+    let [width, height] = sources.size();
+    let value = |pixel: usize| [0, 1, 2].map(|channel| light(sources.value(channel, pixel % width, pixel / width)));
+    let largest = |pixel: usize| value(pixel).into_iter().fold(0.0, f64::max);
+    let all = (0..width * height).into_par_iter().map(|pixel| (largest(pixel), pixel));
+    // Of equals the first, however they are shared out.
+    let brighter = |a: (f64, usize), b: (f64, usize)| if b.0 > a.0 || b.0 == a.0 && b.1 < a.1 { b } else { a };
+    all.reduce(|| (0.0, usize::MAX), brighter).1.min(width * height - 1)
+}
+
+/// The largest error that is found at these pixels, relative to the veil there.
+pub(super) fn measured(
+    channels: &[(Plan, Kernel)],
+    sources: &veil::Photo<'_>,
+    geometry: &Geometry,
+    border: Border,
+    computed: &veil::Veil,
+    pixels: &[[usize; 2]],
+) -> Result<f64> {
+    let width = sources.size()[0];
+    let largest = |plane: &Vec<f32>| f64::from(plane.par_iter().copied().reduce(|| 0.0, f32::max));
+    let floors = computed.planes.each_ref().map(|plane| veil::FLOOR * largest(plane));
+    let mut worst = 0.0f64;
+    let angles = geometry.angles(sources.size(), border);
+    for (index, (_, kernel)) in channels.iter().enumerate() {
+        let kernel = looked_up(kernel, angles)?;
+        let truth = veil::reference::at(sources, geometry, &kernel, border, pixels);
+        let mine: &[usize] = if channels.len() == 1 { &[0, 1, 2] } else { &[index] };
+        for (&[x, y], truth) in pixels.iter().zip(truth) {
+            for &channel in mine {
+                let (value, truth) = (f64::from(computed.planes[channel][y * width + x]), truth[channel]);
+                let unit = truth.max(floors[channel]);
+                let error = if value == truth { 0.0 } else { (value - truth).abs() / unit };
+                // What 32-bit floats do not hold is no number here, and told apart elsewhere.
+                worst = if error.is_nan() { f64::INFINITY } else { worst.max(error) };
+            }
+        }
+    }
+    Ok(worst)
+}
+
+/// A kernel by a table, for sums of millions: off by less than a millionth, but for the one place in a table at which cie has a
+/// kink.
+fn looked_up(kernel: &Kernel, [from, to]: [f64; 2]) -> Result<Kernel> {
+    const PLACES: usize = 1 << 14;
+    let (first, step) = ((0.9 * from).ln(), (1.2 * to / from).ln() / PLACES as f64);
+    let places: Vec<f64> = (0..=PLACES + 1).map(|place| kernel.at((first + step * place as f64).exp())).collect();
+    let (exact, mixture) = (kernel.clone(), kernel.mixture().clone());
+    let at = move |angle: f64| {
+        let place = (angle.ln() - first) / step;
+        match place >= 0.0 && place < PLACES as f64 {
+            true => {
+                let (below, part) = (place as usize, place.fract());
+                places[below] + part * (places[below + 1] - places[below])
+            }
+            false => exact.at(angle),
+        }
+    };
+    Kernel::new(at, mixture).map_err(failed)
+}

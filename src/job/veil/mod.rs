@@ -1,0 +1,179 @@
+//! The veil of a photo: planned, computed, held against its definition, and what it does to the picture.
+
+mod account;
+mod measure;
+mod planning;
+
+use rayon::prelude::*;
+
+use super::Stages;
+use crate::certificate::Verify;
+use crate::choices::Normalize;
+use crate::look::{Look, Veil as Wanted};
+use crate::photo::{Alpha, Photo};
+use crate::psf::Fault;
+use crate::scene::Emission;
+use crate::veil::{self, Kernel, Plan, Predicted};
+use crate::{Error, Result};
+
+pub use account::{Ledger, NoSources, VeilError, Veiled};
+use account::{Loss, ledger, no_sources};
+use measure::{brightest, looked_at, measured};
+use planning::at_least;
+#[cfg(feature = "laboratory")]
+pub(crate) use planning::plan_of;
+
+/// A veil that is ready to be laid over its photo.
+pub(super) struct Cast {
+    /// s V, planes of rows.
+    planes: [Vec<f32>; 3],
+    loses: Loss,
+    pub veiled: Veiled,
+}
+
+/// The veil that a look asks for; none without one.
+///
+/// # Errors
+/// [`Error::Usage`] where the look contradicts itself or the photo, [`Error::ToleranceBelowFloor`] where the veil cannot be had to
+/// the tolerance.
+pub(super) fn cast(look: &Look, photo: &Photo, verify: Verify, stages: &mut Stages) -> Result<Option<Cast>> {
+    let Some(wanted) = look.veil.as_ref().filter(|_| look.strength != 0.0) else { return Ok(None) };
+    check(look, wanted)?;
+    let geometry = wanted.geometry(&photo.frame).map_err(told)?;
+    let asked = wanted.tolerance();
+    let size = [photo.width() as usize, photo.height() as usize];
+    let (channels, asked) = stages.time("veil plan", || {
+        // What nobody asked for need not be had.
+        let least = look.accuracy.allow_floor || !wanted.is_held();
+        at_least(wanted, &geometry, size, asked, least)
+    })?;
+    let weighed = weighed(photo);
+    let sources = weighed.as_ref().map_or(&photo.pixels, |pixels| pixels);
+    let sources = veil::Photo::rgba(sources.as_flattened(), size).map_err(failed)?;
+    let mut computed = stages.time("veil", || computed(&channels, &sources))?;
+    let measured = stages.time("veil certify", || {
+        let pixels = looked_at(size, brightest(&sources), verify);
+        measured(&channels, &sources, &geometry, wanted.border, &computed, &pixels).map(|error| (error, pixels.len()))
+    })?;
+    let strength = look.strength;
+    let loses = Loss::new(wanted, geometry, size, strength);
+    let scale = strength as f32;
+    computed.planes.par_iter_mut().for_each(|plane| plane.iter_mut().for_each(|value| *value *= scale));
+    let predicted = predicted(&channels);
+    let veil::Veil { planes, bad, dark, .. } = computed;
+    let veiled = Veiled {
+        parameters: wanted.section().parameters,
+        projection: wanted.projection(),
+        fov: wanted.fov(),
+        border: wanted.border,
+        strength,
+        scattered: wanted.psf().energies(),
+        centre: wanted.psf().centres(),
+        terms: channels.iter().map(|(_, kernel)| kernel.mixture().terms.len()).max().unwrap_or(0),
+        notes: (asked > wanted.tolerance()).then(|| raised(asked, wanted.tolerance())).into_iter().collect(),
+        error: VeilError { asked, predicted: predicted.bound, measured: measured.0, pixels: measured.1 },
+        ledger: ledger(&sources, &planes, &loses),
+        dark,
+        no_sources: no_sources(bad),
+    };
+    Ok(Some(Cast { planes, loses, veiled }))
+}
+
+fn raised(tolerance: f64, asked: f64) -> String {
+    format!("the veil is held to {tolerance:.1e} of itself instead of {asked:.1e}: the lowest that can be had here")
+}
+
+/// Whether a look's veil can be what it says.
+fn check(look: &Look, veil: &Wanted) -> Result<()> {
+    if look.normalize != Normalize::None {
+        return Err(Error::Usage("a veil needs --normalize none: only that glare is physical".into()));
+    }
+    let most = veil.psf().energies().into_iter().fold(0.0, f64::max);
+    if look.strength * most >= 1.0 && !veil.adds {
+        return Err(Error::Usage(format!(
+            "a strength of {} scatters {:.3} of the light, and there is no more than all of it: give less, or --mix add to keep the \
+             photo as it is",
+            look.strength,
+            look.strength * most
+        )));
+    }
+    Ok(())
+}
+
+fn told(fault: Fault) -> Error {
+    let option = if fault.key == "psf" { "veil" } else { fault.key };
+    Error::Usage(format!("--{option}: {}", fault.reason))
+}
+
+fn failed(error: veil::Error) -> Error {
+    match error {
+        veil::Error::OutOfReach { asked, best, .. } => Error::ToleranceBelowFloor { asked, floor: best },
+        error => Error::Plan(error.to_string()),
+    }
+}
+
+/// The photo's pixels by their share of the light, where straight alpha makes that another than all.
+fn weighed(photo: &Photo) -> Option<Vec<[f32; 4]>> {
+    (photo.source.alpha == Alpha::Straight).then(|| {
+        let emission = Emission::of(photo);
+        let share = |&pixel: &[f32; 4]| {
+            let share = emission.share(&pixel);
+            pixel.map(|value| value * share)
+        };
+        photo.pixels.par_iter().map(share).collect()
+    })
+}
+
+/// The veil, each channel by its kernel.
+fn computed(channels: &[(Plan, Kernel)], sources: &veil::Photo<'_>) -> Result<veil::Veil> {
+    let mut all =
+        channels.iter().map(|(plan, _)| plan.evaluate(sources).map_err(failed)).collect::<Result<Vec<_>>>()?;
+    let mut veil = all.remove(0);
+    for (channel, mut other) in (1..).zip(all) {
+        veil.planes[channel] = std::mem::take(&mut other.planes[channel]);
+        (veil.dark[channel], veil.lonely[channel]) = (other.dark[channel], other.lonely[channel]);
+    }
+    Ok(veil)
+}
+
+fn predicted(channels: &[(Plan, Kernel)]) -> Predicted {
+    let worst = channels.iter().map(|(plan, _)| plan.predicted()).max_by(|a, b| a.bound.total_cmp(&b.bound));
+    worst.expect("there is a kernel").clone()
+}
+
+/// What a sample gives: nothing where it is negative or no number.
+fn light(value: f32) -> f64 {
+    if value > 0.0 && value.is_finite() { f64::from(value) } else { 0.0 }
+}
+
+impl Cast {
+    /// Adds the veil to glare.
+    pub fn add_to(&self, glare: &mut [[f32; 4]]) {
+        let planes = self.planes.each_ref();
+        glare.par_iter_mut().enumerate().for_each(|(at, pixel)| {
+            pixel.iter_mut().zip(planes).for_each(|(value, plane)| *value += plane[at]);
+        });
+    }
+
+    /// What the photo's pixels change by: less what they lose, more what falls on them. What is negative or no number loses
+    /// nothing.
+    pub fn change(&self, photo: &[[f32; 4]]) -> Change {
+        let of = |(at, own): (usize, &[f32; 4])| {
+            let (_, lost) = self.loses.at(at);
+            [0, 1, 2].map(|k| (f64::from(self.planes[k][at]) - lost[k] * light(own[k])) as f32)
+        };
+        Change(photo.par_iter().enumerate().map(of).collect())
+    }
+}
+
+/// What is added to a photo, RGB.
+pub(super) struct Change(Vec<[f32; 3]>);
+
+impl Change {
+    /// Adds it.
+    pub fn add_to(&self, picture: &mut [[f32; 4]]) {
+        picture.par_iter_mut().zip(&self.0).for_each(|(pixel, change)| {
+            pixel.iter_mut().zip(change).for_each(|(value, change)| *value += change);
+        });
+    }
+}

@@ -1,0 +1,140 @@
+//! What a person says of a point-spread function.
+
+use std::path::PathBuf;
+
+use crate::options::numbers::{colour, finite};
+use crate::psf::{Fault, Luminance, Parameters};
+use crate::scene::absolute;
+use crate::{Error, Result};
+
+/// The keys of point-spread functions. Each function takes its own.
+#[derive(Debug, Clone, Default, clap::Args)]
+pub struct PsfArgs {
+    /// Of cie, cie135, stiles-holladay: the observer's age in years, 0 to 120 [default: 25]
+    #[arg(long, value_name = "YEARS", value_parser = finite)]
+    age: Option<f64>,
+
+    /// Of cie, cie135: the pigment of the observer's eyes, 0 (black) over 0.5 (brown) to 1.2 (light blue) [default: 0.5]
+    #[arg(long, value_name = "P", value_parser = finite)]
+    pigment: Option<f64>,
+
+    /// Of spencer: what the eye is adapted to [default: photopic]
+    #[arg(long, value_enum)]
+    luminance: Option<Luminance>,
+
+    /// Of gaussian: the standard deviation, in half picture heights
+    #[arg(long, value_name = "W", value_parser = finite)]
+    width: Option<f64>,
+
+    /// Of mixture: standard deviations, in half picture heights
+    #[arg(long, value_name = "W,W,...", value_delimiter = ',', value_parser = finite)]
+    widths: Option<Vec<f64>>,
+
+    /// Of mixture: how much light each Gaussian has of it, as ratios [default: all as much]
+    #[arg(long, value_name = "E,E,...", value_delimiter = ',', value_parser = finite)]
+    weights: Option<Vec<f64>>,
+
+    /// Of mixture: the colour of each Gaussian [default: all white]
+    #[arg(long, value_name = "R,G,B;R,G,B;...", value_delimiter = ';', value_parser = colour)]
+    tints: Option<Vec<[f64; 3]>>,
+
+    /// Of abg: a / (b + r^g), r in half picture heights, up to the radius END; below g = 2.05 there must be one
+    #[arg(long, value_name = "A,B,G[,END]", value_parser = tail)]
+    abg: Option<Tail>,
+
+    /// Of table: a CSV file of radius, in half picture heights, and value
+    #[arg(long, value_name = "FILE")]
+    table: Option<PathBuf>,
+
+    /// Of kernel: a picture of the point's light
+    #[arg(long, value_name = "FILE")]
+    kernel: Option<PathBuf>,
+
+    /// The share of the light that is scattered, above 0 and at most 1 [default: the function's own]
+    #[arg(long, value_name = "F", value_parser = finite)]
+    scatter: Option<f64>,
+}
+
+/// `--abg`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Tail([f64; 3], Option<f64>);
+
+fn tail(text: &str) -> std::result::Result<Tail, String> {
+    let numbers: Vec<f64> = text.split(',').filter_map(|part| finite(part.trim()).ok()).collect();
+    match (numbers[..].first_chunk(), numbers.len(), text.split(',').count()) {
+        (Some(&tail), 3, 3) => Ok(Tail(tail, None)),
+        (Some(&tail), 4, 4) => Ok(Tail(tail, Some(numbers[3]))),
+        _ => Err("expected three or four finite numbers, like 1e-4,1e-3,2.5".to_owned()),
+    }
+}
+
+impl PsfArgs {
+    /// What is given wins over what was said before.
+    pub fn over(&self, before: Parameters) -> Parameters {
+        let Self { age, pigment, luminance, width, widths, weights, tints, abg, table, kernel, scatter } = self.clone();
+        let (tail, end) = abg.map_or((None, None), |Tail(tail, end)| (Some(tail), end));
+        let file = |given: Option<PathBuf>, before| given.map(|path| absolute(&path)).or(before);
+        Parameters {
+            psf: before.psf,
+            age: age.or(before.age),
+            pigment: pigment.or(before.pigment),
+            luminance: luminance.or(before.luminance),
+            width: width.or(before.width),
+            widths: widths.or(before.widths),
+            weights: weights.or(before.weights),
+            tints: tints.or(before.tints),
+            a: tail.map(|[a, _, _]| a).or(before.a),
+            b: tail.map(|[_, b, _]| b).or(before.b),
+            g: tail.map(|[_, _, g]| g).or(before.g),
+            end: if abg.is_some() { end } else { before.end },
+            table: file(table, before.table),
+            kernel: file(kernel, before.kernel),
+            scatter: scatter.or(before.scatter),
+        }
+    }
+
+    /// Whether nothing is given.
+    pub fn is_empty(&self) -> bool {
+        let Self { age, pigment, luminance, width, widths, weights, tints, abg, table, kernel, scatter } = self;
+        [age, pigment, width, scatter].iter().all(|number| number.is_none())
+            && luminance.is_none()
+            && [widths, weights].iter().all(|list| list.is_none())
+            && tints.is_none()
+            && abg.is_none()
+            && [table, kernel].iter().all(|file| file.is_none())
+    }
+
+    /// The files that the function is read from.
+    pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        self.table.iter().chain(&self.kernel)
+    }
+}
+
+/// What is wrong with a function, by the option that says it.
+pub fn wrong(fault: &Fault) -> Error {
+    let option = match fault.key {
+        "a" | "b" | "g" | "end" => "abg",
+        "psf" => "veil",
+        key => key,
+    };
+    Error::Usage(format!("--{option}: {}", fault.reason))
+}
+
+/// A result whose fault names an option.
+pub fn told<T>(result: std::result::Result<T, Fault>) -> Result<T> {
+    result.map_err(|fault| wrong(&fault))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tail_has_three_or_four_numbers() {
+        assert_eq!(tail("1e-4, 1e-3,2.5"), Ok(Tail([1e-4, 1e-3, 2.5], None)));
+        assert_eq!(tail("1,2,3,4"), Ok(Tail([1.0, 2.0, 3.0], Some(4.0))));
+        for bad in ["", "1,2", "1,2,3,4,5", "1,x,3", "1,2,3,nan", "1,,2,3"] {
+            assert!(tail(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! What every pixel of the photo scatters.
+
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+use clap::builder::PossibleValue;
+
+use crate::choices::{Border, Projection};
+use crate::look::{Look, Veil};
+use crate::options::PsfArgs;
+use crate::options::numbers::finite;
+use crate::options::psf::told;
+use crate::psf::{Name, Parameters};
+use crate::scene::VeilSection;
+use crate::{Error, Result};
+
+/// The veil: every pixel a source, by a point-spread function.
+#[derive(Debug, Clone, Default, clap::Args)]
+#[command(next_help_heading = "Veil")]
+pub struct VeilArgs {
+    /// What every pixel scatters over all others, by a point-spread function; `vglare psf` shows each [default: none]
+    #[arg(long, value_enum, value_name = "PSF")]
+    veil: Option<VeilName>,
+
+    #[command(flatten)]
+    psf: PsfArgs,
+
+    /// The field of view across the picture's width, in degrees, for functions in degrees: 0.1 to 179
+    #[arg(long, value_name = "DEGREES", value_parser = finite)]
+    fov: Option<f64>,
+
+    /// How the camera formed the picture [default: rectilinear for functions in degrees, planar for others]
+    #[arg(long, value_enum)]
+    projection: Option<Projection>,
+
+    /// What lies beyond the picture's edges, for the veil [default: none]
+    #[arg(long, value_enum)]
+    border: Option<Border>,
+}
+
+/// `--veil`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum VeilName {
+    None,
+    Psf(Name),
+}
+
+impl ValueEnum for VeilName {
+    fn value_variants<'a>() -> &'a [Self] {
+        const ALL: [VeilName; 1 + Name::ALL.len()] = {
+            let mut all = [VeilName::None; 1 + Name::ALL.len()];
+            let mut index = 0;
+            while index < Name::ALL.len() {
+                all[index + 1] = VeilName::Psf(Name::ALL[index]);
+                index += 1;
+            }
+            all
+        };
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        match self {
+            Self::None => Some(PossibleValue::new("none").help("Nothing")),
+            Self::Psf(name) => name.to_possible_value(),
+        }
+    }
+}
+
+impl VeilArgs {
+    /// What is given wins over what was set before; so does a tolerance, which is an option of all glare.
+    ///
+    /// # Errors
+    /// [`Error::Usage`], which names the option.
+    pub fn over(&self, look: Look, tolerance: Option<f64>) -> Result<Look> {
+        let before = look.veil.as_ref().map(Veil::section);
+        let adds = look.veil.as_ref().is_some_and(|veil| veil.adds);
+        let section = match (self.veil, before) {
+            (Some(VeilName::None), _) if self.says_nothing() => return Ok(Look { veil: None, ..look }),
+            (Some(VeilName::None), _) => None,
+            (Some(VeilName::Psf(name)), Some(before)) if before.parameters.psf == name => Some(before),
+            (Some(VeilName::Psf(name)), before) => {
+                let none = VeilSection {
+                    parameters: Parameters::new(name),
+                    fov: None,
+                    projection: None,
+                    border: None,
+                    tolerance: None,
+                };
+                Some(before.map_or(none, |before| VeilSection { parameters: Parameters::new(name), ..before }))
+            }
+            (None, before) => before,
+        };
+        let Some(VeilSection { parameters, fov, projection, border, tolerance: before }) = section else {
+            if self.says_nothing() {
+                return Ok(look);
+            }
+            return Err(Error::Usage(
+                "there is no veil, and options say how it is to be: name its function by --veil, as cie".into(),
+            ));
+        };
+        let section = VeilSection {
+            parameters: self.psf.over(parameters),
+            fov: self.fov.or(fov),
+            projection: self.projection.or(projection),
+            border: self.border.or(border),
+            tolerance: tolerance.or(before),
+        };
+        Ok(Look { veil: Some(told(Veil::new(&section, adds))?), ..look })
+    }
+
+    /// The files that its function is read from.
+    pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        self.psf.files()
+    }
+
+    fn says_nothing(&self) -> bool {
+        let Self { veil: _, psf, fov, projection, border } = self;
+        psf.is_empty() && fov.is_none() && projection.is_none() && border.is_none()
+    }
+}

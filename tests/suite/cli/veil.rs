@@ -1,0 +1,246 @@
+//! `apply --veil`: every pixel a source.
+
+use vglare::photo::{self, Photo};
+
+use super::{Workplace, night};
+
+const WIDTH: usize = 160;
+const HEIGHT: usize = 100;
+
+/// Black but for one pixel.
+fn point(column: usize, row: usize, light: f32) -> Photo {
+    let mut pixels = vec![[0.0, 0.0, 0.0, 1.0]; WIDTH * HEIGHT];
+    pixels[row * WIDTH + column] = [light, 0.5 * light, 0.0, 1.0];
+    Photo::new(WIDTH as u32, HEIGHT as u32, pixels)
+}
+
+/// Where a pixel of a rectilinear picture looks, and its solid angle; by `fov` degrees across the width.
+fn direction(column: usize, row: usize, fov: f64) -> ([f64; 3], f64) {
+    let focal = 0.5 * WIDTH as f64 / (0.5 * fov).to_radians().tan();
+    let [x, y] = [(column, WIDTH), (row, HEIGHT)].map(|(at, side)| (at as f64 - 0.5 * (side as f64 - 1.0)) / focal);
+    let z = 1.0 / (1.0 + x * x + y * y).sqrt();
+    ([x * z, y * z, z], z.powi(3) / (focal * focal))
+}
+
+/// CIE 146's general disability glare equation at age 25 and pigment 0.5, per steradian.
+fn cie(degrees: f64) -> f64 {
+    let theta = degrees.max(0.1);
+    10.0 / theta.powi(3) + (5.0 / theta.powi(2) + 0.05 / theta) * (1.0 + (25.0f64 / 62.5).powi(4)) + 0.00125
+}
+
+#[test]
+fn one_pixel_makes_the_glare_that_the_equation_says_anywhere() {
+    let place = Workplace::new();
+    for (fov, column, row) in [(5.0, 80, 50), (50.0, 3, 95), (90.0, 150, 4)] {
+        place.write("in.exr", &point(column, row, 1e4));
+        let fov_text = fov.to_string();
+        let line = ["apply", "in.exr", "--glare", "veil.exr", "--veil", "cie", "--lens", "none", "--fov", &fov_text];
+        place.vglare(&[&line[..], &["--force", "--tolerance", "2e-3"]].concat()).succeeded();
+        let veil = photo::read(&place.path("veil.exr")).unwrap();
+        let (source, area) = direction(column, row, fov);
+        let mut worst = 0.0f64;
+        for pixel in (0..WIDTH * HEIGHT).filter(|&pixel| pixel != row * WIDTH + column) {
+            let (target, _) = direction(pixel % WIDTH, pixel / WIDTH, fov);
+            let chord: f64 = (0..3).map(|k| (source[k] - target[k]).powi(2)).sum::<f64>().sqrt();
+            let wanted = 1e4 * area * cie((2.0 * (0.5 * chord).asin()).to_degrees());
+            worst = worst.max((f64::from(veil.pixels[pixel][0]) / wanted - 1.0).abs());
+            assert_eq!(veil.pixels[pixel][2], 0.0);
+        }
+        assert!(worst < 2e-3, "{fov}: {worst:e}");
+        assert_eq!(veil.pixels[row * WIDTH + column][0], 0.0, "a pixel is no source of its own veil");
+    }
+}
+
+#[test]
+fn light_is_neither_made_nor_lost_on_its_way() {
+    let place = Workplace::new();
+    place.photo("in.exr");
+    let line = [
+        "apply",
+        "in.exr",
+        "-o",
+        "out.exr",
+        "--veil",
+        "gaussian",
+        "--width",
+        "0.1",
+        "--scatter",
+        "0.3",
+        "--lens",
+        "none",
+    ];
+    place.vglare(&[&line[..], &["--report", "report.json", "--force"]].concat()).succeeded();
+    let report = place.read_json("report.json");
+    let sums = |name: &str| {
+        let photo = photo::read(&place.path(name)).unwrap();
+        [0, 1, 2].map(|k| photo.pixels.iter().map(|pixel| f64::from(pixel[k])).sum::<f64>())
+    };
+    let ([before, after], veil) = ([sums("in.exr"), sums("out.exr")], &report["veil"]);
+    let area = (2.0f64 / 64.0).powi(2);
+    for k in 0..3 {
+        let part = |name: &str| veil["ledger"][name][k].as_f64().unwrap();
+        assert!((part("light") / (area * before[k]) - 1.0).abs() < 1e-6);
+        assert!(((part("kept") + part("inside")) / (area * after[k]) - 1.0).abs() < 1e-5);
+        assert!((part("light") - part("kept") - part("inside") - part("lost")).abs() < 1e-9 * part("light"));
+        // The photo's lights stand near its edges.
+        assert!(part("lost") > 0.0 && part("lost") < 0.3 * part("light"));
+    }
+    let error = |name: &str| veil["error"][name].as_f64().unwrap();
+    assert!(error("measured") <= error("predicted") && error("predicted") <= 1e-2 && error("pixels") > 500.0);
+    assert_eq!(report["plan"], serde_json::Value::Null, "without ghosts there is nothing to plan for them");
+    // To add is to keep what was there.
+    place.vglare(&[&line[..], &["--mix", "add", "--glare", "veil.exr", "--force"]].concat()).succeeded();
+    let (added, veil) = (sums("out.exr"), sums("veil.exr"));
+    assert!((0..3).all(|k| (added[k] / (before[k] + veil[k]) - 1.0).abs() < 1e-6));
+}
+
+#[test]
+fn ghosts_and_veil_add_up_and_files_say_what_options_do() {
+    let place = Workplace::new();
+    place.photo("in.exr");
+    let glare = |name: &str, args: &[&str]| {
+        place.vglare(&[&["apply", "in.exr", "--glare", name, "--force"], args].concat()).succeeded();
+        photo::read(&place.path(name)).unwrap().pixels
+    };
+    let options = ["--veil", "spencer", "--luminance", "scotopic", "--fov", "40", "--scatter", "0.2"];
+    let both = glare("both.exr", &options);
+    let (ghosts, veil) = (glare("ghosts.exr", &[]), glare("veil.exr", &[&options[..], &["--lens", "none"]].concat()));
+    for (both, (ghosts, veil)) in both.iter().zip(ghosts.iter().zip(&veil)) {
+        assert!((0..3).all(|k| (both[k] - ghosts[k] - veil[k]).abs() <= 1e-6 * both[k]));
+    }
+    place.text(
+        "look.toml",
+        "[veil]\npsf = \"spencer\"\nluminance = \"scotopic\"\nfov = 40\nscatter = 0.2\n[look]\nstrength = 1.0\n",
+    );
+    assert_eq!(glare("filed.exr", &["--scene", "look.toml"]), both);
+    assert_eq!(glare("none.exr", &["--scene", "look.toml", "--veil", "none"]), ghosts);
+}
+
+#[test]
+fn a_bad_pixel_harms_itself_alone() {
+    let place = Workplace::new();
+    let mut photo = night();
+    place.write("good.exr", &photo);
+    let line = ["--veil", "cie", "--fov", "50", "--lens", "none", "--report", "report.json", "--force"];
+    place.vglare(&[&["apply", "good.exr", "-o", "good-out.exr"], &line[..]].concat()).succeeded();
+    for (at, value) in [(100, f32::NAN), (200, f32::INFINITY), (300, -5.0)] {
+        photo.pixels[at][0] = value;
+    }
+    place.write("bad.exr", &photo);
+    place.vglare(&[&["apply", "bad.exr", "-o", "bad-out.exr"], &line[..]].concat()).succeeded();
+    let [good, bad] = ["good-out.exr", "bad-out.exr"].map(|name| photo::read(&place.path(name)).unwrap().pixels);
+    assert!(bad[100][0].is_nan() && bad[200][0] == f32::INFINITY && (-5.0..-4.9).contains(&bad[300][0]));
+    for at in (0..good.len()).filter(|at| ![100, 200, 300].contains(at)) {
+        assert!((0..3).all(|k| (good[at][k] - bad[at][k]).abs() < 1e-2 * good[at][k]), "{at}");
+    }
+    let report = place.read_json("report.json");
+    let count = |kind: &str| report["veil"]["no_sources"][kind][0].as_u64().unwrap();
+    assert_eq!(["nan", "infinite", "negative"].map(count), [1, 1, 1]);
+}
+
+#[test]
+fn what_no_veil_can_be_is_refused_by_name() {
+    let place = Workplace::new();
+    place.photo("in.exr");
+    place.text("table.csv", "0,1\n0.1,nonsense\n");
+    place.text("bad.toml", "[veil]\npsf = \"cie\"\nage = 200\n");
+    place.text("odd.toml", "[veil]\npsf = \"gaussian\"\nwidth = 0.1\nluminance = \"photopic\"\n");
+    place.text("key.toml", "[veil]\npsf = \"cie\"\ncolour = 3\n");
+    for (line, words) in [
+        ("--veil cie", ["--fov", "field of view"]),
+        ("--veil cie --fov 0.01", ["--fov", "0.1 to 179"]),
+        ("--veil cie --fov 50 --age 130", ["--age", "0 to 120"]),
+        ("--age 60", ["--veil", "cie"]),
+        ("--veil gaussian", ["--width", "needs it"]),
+        ("--veil gaussian --width 0.1", ["strength", "all of it"]),
+        ("--veil gaussian --width 0.1 --age 30 --scatter 0.1", ["--age", "gaussian"]),
+        ("--veil gaussian --width 0.1 --scatter 0.1 --projection rectilinear", ["--projection", "plane"]),
+        ("--veil camera --strength 40", ["strength of 40", "all of it"]),
+        ("--veil cie --fov 50 --normalize minmax", ["--normalize none", "physical"]),
+        ("--veil table --table table.csv", ["--table", "2"]),
+        ("--veil table --table nothing.csv", ["--table", "nothing.csv"]),
+        ("--veil cie --fov 50 --border mirror", ["border", "plane"]),
+    ] {
+        let args: Vec<&str> = ["apply", "in.exr", "-o", "out.exr"].into_iter().chain(line.split(' ')).collect();
+        place.vglare(&args).failed(2, &words);
+    }
+    for (file, words) in [("bad.toml", "age"), ("odd.toml", "luminance"), ("key.toml", "colour")] {
+        place.vglare(&["apply", "in.exr", "-o", "out.exr", "--scene", file]).failed(1, &[file, words]);
+    }
+    assert!(!place.files().contains(&"out.exr".to_owned()));
+}
+
+#[test]
+fn each_colour_has_its_own_gaussians() {
+    let place = Workplace::new();
+    let mut photo = point(80, 50, 1.0);
+    photo.pixels[50 * WIDTH + 80] = [1.0; 4];
+    place.write("in.exr", &photo);
+    let line = "apply in.exr --glare veil.exr --lens none --veil mixture --widths 0.2,0.4 --weights 3,1 --tints 1,0.5,0;0,0.5,1 \
+                --scatter 0.1 --strict --report report.json";
+    place.vglare(&line.split_whitespace().collect::<Vec<_>>()).succeeded();
+    let veil = photo::read(&place.path("veil.exr")).unwrap();
+    let area = (2.0f64 / HEIGHT as f64).powi(2);
+    // Three quarters of the energy in the narrow one, red to cyan; the rest in the wide one, blue to yellow.
+    let gaussian =
+        |width: f64, r: f64| 0.1 * (-0.5 * (r / width).powi(2)).exp() / (std::f64::consts::TAU * width * width);
+    for (column, row) in [(81, 50), (90, 60), (20, 50), (80, 99)] {
+        let r = 2.0 / HEIGHT as f64 * f64::hypot(column as f64 - 80.0, row as f64 - 50.0);
+        let [narrow, wide] = [0.75 * gaussian(0.2, r), 0.25 * gaussian(0.4, r)];
+        let wanted = [narrow, 0.5 * (narrow + wide), wide].map(|value| area * value);
+        for (value, wanted) in veil.pixels[row * WIDTH + column].iter().zip(wanted) {
+            assert!((f64::from(*value) / wanted - 1.0).abs() < 1e-2, "{column}, {row}: {value:e} {wanted:e}");
+        }
+    }
+}
+
+#[test]
+fn a_tolerance_that_nobody_asked_for_gives_way() {
+    let place = Workplace::new();
+    place.photo("in.exr");
+    let line = [
+        "apply",
+        "in.exr",
+        "-o",
+        "out.exr",
+        "--lens",
+        "none",
+        "--veil",
+        "cie",
+        "--fov",
+        "50",
+        "--projection",
+        "planar",
+    ];
+    place.vglare(&[&line[..], &["--tolerance", "1e-6"]].concat()).failed(3, &["1.0e-6"]);
+    let said = place.vglare(&[&line[..], &["--tolerance", "1e-6", "--allow-floor"]].concat()).succeeded().stdout();
+    assert!(said.contains("instead of 1.0e-6"), "{said}");
+}
+
+#[test]
+fn functions_are_shown_drawn_and_written() {
+    let place = Workplace::new();
+    for name in ["cie", "cie135", "spencer", "stiles-holladay", "camera"] {
+        let said =
+            place.vglare(&["psf", name, "--plot", "psf.svg", "--csv", "psf.csv", "--force"]).succeeded().stdout();
+        assert!(said.contains(name) && said.contains("Gaussians"), "{said}");
+    }
+    place.vglare(&["psf", "cie", "--age", "60", "--plot", "psf.png", "--csv", "cie.csv"]).succeeded();
+    let picture = photo::read(&place.path("psf.png")).unwrap();
+    assert!(picture.width() > picture.height() && picture.pixels.iter().any(|pixel| pixel[0] < 0.5));
+    let text = std::fs::read_to_string(place.path("cie.csv")).unwrap();
+    let rows: Vec<Vec<f64>> =
+        text.lines().skip(1).map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect();
+    assert_eq!((rows.len(), rows[0].len()), (400, 7));
+    for row in &rows {
+        let (theta, wanted) = (row[0], |theta: f64| {
+            10.0 / theta.powi(3) + (5.0 / theta.powi(2) + 0.05 / theta) * (1.0 + (60.0f64 / 62.5).powi(4)) + 0.00125
+        });
+        assert!((row[1] / wanted(theta) - 1.0).abs() < 1e-9 && row[3].abs() < 1e-2, "{row:?}");
+    }
+    assert!(rows.windows(2).all(|pair| pair[0][4] < pair[1][4]) && (rows[399][4] - 1.0).abs() < 1e-6);
+    let svg = std::fs::read_to_string(place.path("psf.svg")).unwrap();
+    assert_eq!(svg.matches("<svg").count(), 5);
+    place.vglare(&["psf", "cie", "--plot", "psf.pdf"]).failed(1, &["psf.pdf", ".svg"]);
+    place.vglare(&["psf", "cie", "--csv", "cie.csv"]).failed(1, &["cie.csv"]);
+}
