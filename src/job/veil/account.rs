@@ -47,7 +47,7 @@ pub struct Veiled {
 pub struct VeilError {
     /// What was asked for.
     pub asked: f64,
-    /// The bound that the plan has proved.
+    /// The plan's bound.
     pub predicted: f64,
     /// What was found against the direct sum in 64-bit floats.
     pub measured: f64,

@@ -71,7 +71,7 @@ pub(super) fn against_a_copy(stage: &Stage, report: &mut Report) -> Result<()> {
         let [copy, took] = interleave(stage.rounds, [&mut || actor.copy(), &mut evaluate] as [Arm<'_>; 2])?;
         let ratio = took.over(&copy);
         table.row(format!("copy, for {what}"), &copy, None);
-        table.row(format!("{what}, {tolerance:e} asked, {:.1e} proved", plan.predicted().bound), &took, Some(ratio));
+        table.row(format!("{what}, {tolerance:e} asked, {:.1e} predicted", plan.predicted().bound), &took, Some(ratio));
         report.bar(format!("{what}: veil / copy"), Target::AtMost(most), ratio.paired);
         if section.parameters.psf == Name::Gaussian {
             widths.push(took);

@@ -10,6 +10,11 @@ mod spherical;
 use super::reference::{self, Window};
 use super::{Border, FLOOR, Geometry, Kernel, Photo, Veil};
 
+/// Whether tests by chance take their long form; `.ci/full` asks for it.
+fn long() -> bool {
+    std::env::var_os("VGLARE_LONG_TESTS").is_some()
+}
+
 /// The largest error of a veil within a window, relative to the local veil or to the floor, and the channel and pixel where it is.
 fn worst(
     veil: &Veil,

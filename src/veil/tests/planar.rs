@@ -2,7 +2,7 @@
 
 use super::kernels::{cie, gaussian, spencer};
 use super::photos::{Dice, photo};
-use super::worst;
+use super::{long, worst};
 use crate::veil::reference::Window;
 use crate::veil::{Border, Gaussian, Geometry, Kernel, Mixture, Photo, Plan};
 
@@ -28,16 +28,7 @@ fn some_kernel(dice: &mut Dice) -> (Kernel, f64, f64) {
 
 #[test]
 fn the_bound_holds_relative_to_the_local_veil() {
-    bounds_hold(Dice(1), 20);
-}
-
-#[test]
-#[ignore = "a minute, optimised"]
-fn the_bound_holds_in_many_photos() {
-    bounds_hold(Dice(77), 400);
-}
-
-fn bounds_hold(mut dice: Dice, cases: usize) {
+    let (mut dice, cases) = if long() { (Dice(77), 400) } else { (Dice(1), 20) };
     let mut ratios = Vec::new();
     for case in 0..cases {
         let size = [1 + dice.below(120), 1 + dice.below(90)];

@@ -2,23 +2,14 @@
 
 use super::kernels::{cie, spencer};
 use super::photos::{Dice, photo};
-use super::worst;
+use super::{long, worst};
 use crate::veil::reference::Window;
 use crate::veil::{Border, Error, Geometry, Photo, Plan};
 
 /// Kernels, fields, projections and tolerances; with lights up to 10⁸ over black or noise.
 #[test]
 fn the_bound_holds_on_the_sphere() {
-    bounds_hold(Dice(11), 1);
-}
-
-#[test]
-#[ignore = "a minute, optimised"]
-fn the_bound_holds_on_many_spheres() {
-    bounds_hold(Dice(78), 12);
-}
-
-fn bounds_hold(mut dice: Dice, rounds: usize) {
+    let (mut dice, rounds) = if long() { (Dice(78), 12) } else { (Dice(11), 1) };
     let mut ratios = Vec::new();
     let fields = [1.0, 5.0, 20.0, 40.0, 50.0, 60.0];
     for (case, field) in fields.into_iter().cycle().take(fields.len() * rounds).enumerate() {

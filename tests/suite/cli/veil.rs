@@ -14,6 +14,11 @@ fn point(column: usize, row: usize, light: f32) -> Photo {
     Photo::new(WIDTH as u32, HEIGHT as u32, pixels)
 }
 
+/// What a person types, word by word.
+fn words(line: &str) -> Vec<&str> {
+    line.split_whitespace().collect()
+}
+
 /// Where a pixel of a rectilinear picture looks, and its solid angle; by `fov` degrees across the width.
 fn direction(column: usize, row: usize, fov: f64) -> ([f64; 3], f64) {
     let focal = 0.5 * WIDTH as f64 / (0.5 * fov).to_radians().tan();
@@ -55,20 +60,7 @@ fn one_pixel_makes_the_glare_that_the_equation_says_anywhere() {
 fn light_is_neither_made_nor_lost_on_its_way() {
     let place = Workplace::new();
     place.photo("in.exr");
-    let line = [
-        "apply",
-        "in.exr",
-        "-o",
-        "out.exr",
-        "--veil",
-        "gaussian",
-        "--width",
-        "0.1",
-        "--scatter",
-        "0.3",
-        "--lens",
-        "none",
-    ];
+    let line = words("apply in.exr -o out.exr --veil gaussian --width 0.1 --scatter 0.3 --lens none");
     place.vglare(&[&line[..], &["--report", "report.json", "--force"]].concat()).succeeded();
     let report = place.read_json("report.json");
     let sums = |name: &str| {
@@ -121,7 +113,7 @@ fn a_bad_pixel_harms_itself_alone() {
     let place = Workplace::new();
     let mut photo = night();
     place.write("good.exr", &photo);
-    let line = ["--veil", "cie", "--fov", "50", "--lens", "none", "--report", "report.json", "--force"];
+    let line = words("--veil cie --fov 50 --lens none --report report.json --force");
     place.vglare(&[&["apply", "good.exr", "-o", "good-out.exr"], &line[..]].concat()).succeeded();
     for (at, value) in [(100, f32::NAN), (200, f32::INFINITY), (300, -5.0)] {
         photo.pixels[at][0] = value;
@@ -178,7 +170,7 @@ fn each_colour_has_its_own_gaussians() {
     place.write("in.exr", &photo);
     let line = "apply in.exr --glare veil.exr --lens none --veil mixture --widths 0.2,0.4 --weights 3,1 --tints 1,0.5,0;0,0.5,1 \
                 --scatter 0.1 --strict --report report.json";
-    place.vglare(&line.split_whitespace().collect::<Vec<_>>()).succeeded();
+    place.vglare(&words(line)).succeeded();
     let veil = photo::read(&place.path("veil.exr")).unwrap();
     let area = (2.0f64 / HEIGHT as f64).powi(2);
     // Three quarters of the energy in the narrow one, red to cyan; the rest in the wide one, blue to yellow.
@@ -198,20 +190,7 @@ fn each_colour_has_its_own_gaussians() {
 fn a_tolerance_that_nobody_asked_for_gives_way() {
     let place = Workplace::new();
     place.photo("in.exr");
-    let line = [
-        "apply",
-        "in.exr",
-        "-o",
-        "out.exr",
-        "--lens",
-        "none",
-        "--veil",
-        "cie",
-        "--fov",
-        "50",
-        "--projection",
-        "planar",
-    ];
+    let line = words("apply in.exr -o out.exr --lens none --veil cie --fov 50 --projection planar");
     place.vglare(&[&line[..], &["--tolerance", "1e-6"]].concat()).failed(3, &["1.0e-6"]);
     let said = place.vglare(&[&line[..], &["--tolerance", "1e-6", "--allow-floor"]].concat()).succeeded().stdout();
     assert!(said.contains("instead of 1.0e-6"), "{said}");
