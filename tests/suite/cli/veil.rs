@@ -166,7 +166,7 @@ fn what_no_veil_can_be_is_refused_by_name() {
 fn each_colour_has_its_own_gaussians() {
     let place = Workplace::new();
     let mut photo = point(80, 50, 1.0);
-    photo.pixels[50 * WIDTH + 80] = [1.0; 4];
+    photo.pixels[50 * WIDTH + 80] = [1.0, 2.0, 4.0, 1.0];
     place.write("in.exr", &photo);
     let line = "apply in.exr --glare veil.exr --lens none --veil mixture --widths 0.2,0.4 --weights 3,1 --tints 1,0.5,0;0,0.5,1 \
                 --scatter 0.1 --strict --report report.json";
@@ -179,7 +179,7 @@ fn each_colour_has_its_own_gaussians() {
     for (column, row) in [(81, 50), (90, 60), (20, 50), (80, 99)] {
         let r = 2.0 / HEIGHT as f64 * f64::hypot(column as f64 - 80.0, row as f64 - 50.0);
         let [narrow, wide] = [0.75 * gaussian(0.2, r), 0.25 * gaussian(0.4, r)];
-        let wanted = [narrow, 0.5 * (narrow + wide), wide].map(|value| area * value);
+        let wanted = [narrow, narrow + wide, 4.0 * wide].map(|value| area * value);
         for (value, wanted) in veil.pixels[row * WIDTH + column].iter().zip(wanted) {
             assert!((f64::from(*value) / wanted - 1.0).abs() < 1e-2, "{column}, {row}: {value:e} {wanted:e}");
         }
