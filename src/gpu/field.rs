@@ -5,6 +5,38 @@ use super::resource::{Buffer, Scratch, Texel, Texture};
 use super::runner::Runner;
 use crate::Result;
 
+/// The bells that ghosts are summed with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Bells {
+    file: &'static str,
+    /// One bit for each kind that the file with all of them has a loop for.
+    kinds: u32,
+}
+
+impl Bells {
+    /// One kind, which has a file in `shaders/`.
+    pub const fn one(file: &'static str) -> Self {
+        Self { file, kinds: 0 }
+    }
+
+    /// Several, one bit for each kind.
+    pub const fn several(kinds: u32) -> Self {
+        Self { file: "bells/any.glsl", kinds }
+    }
+
+    /// Whether there are several.
+    pub const fn are_several(self) -> bool {
+        self.kinds != 0
+    }
+
+    /// What a shader is specialised with to include them.
+    pub fn defines(self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        const HAS: [&str; 9] = ["HAS_0", "HAS_1", "HAS_2", "HAS_3", "HAS_4", "HAS_5", "HAS_6", "HAS_7", "HAS_8"];
+        let has = (0..).zip(HAS).filter(move |(kind, _)| self.kinds >> kind & 1 == 1).map(|(_, name)| (name, "1"));
+        std::iter::once(("BELL", self.file)).chain(has)
+    }
+}
+
 /// A GLSL function `glare(pixel)`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Source {
@@ -12,8 +44,8 @@ pub(crate) struct Source {
     pub evaluator: &'static str,
     /// The files of the series, of the direct sum and of what is drawn where it reaches, where the function is their sum.
     pub parts: Option<[&'static str; 3]>,
-    /// The file of the bell, or of all bells, that it includes, if any.
-    pub bell: Option<&'static str>,
+    /// The bells that it includes, if any.
+    pub bells: Option<Bells>,
     /// Whether there are more ghosts than fit a uniform block.
     pub many_ghosts: bool,
     /// Whether the bells are computed in 64-bit floats.
@@ -28,7 +60,7 @@ impl Source {
 
     /// The function in a file that is one by itself.
     pub const fn of(evaluator: &'static str) -> Self {
-        Self { evaluator, parts: None, bell: None, many_ghosts: false, double: false, exact: false }
+        Self { evaluator, parts: None, bells: None, many_ghosts: false, double: false, exact: false }
     }
 
     /// What a shader is specialised with to include this function.
@@ -37,7 +69,7 @@ impl Source {
         let parts =
             |[series, direct, local]: [&'static str; 3]| [("SERIES", series), ("DIRECT", direct), ("LOCAL", local)];
         defines.extend(self.parts.into_iter().flat_map(parts));
-        defines.extend(self.bell.map(|bell| ("BELL", bell)));
+        defines.extend(self.bells.into_iter().flat_map(Bells::defines));
         if self.many_ghosts {
             defines.push(("MANY_GHOSTS", "1"));
         }

@@ -8,6 +8,7 @@ use glow::HasContext as _;
 use super::context::Device;
 use super::evaluators::{STEP, Words, within_rounds};
 use super::exact::room;
+use super::field::Bells;
 use super::layout::{CANVAS, DoubleGhost, GHOSTS, LARGEST_POINT, LocalGhost, NODES, PARTIALS, PASS, SHAPES};
 use super::resource::{Attribute, Buffer, Scratch, Texel, Texture, VertexArray};
 use super::runner::Runner;
@@ -163,15 +164,15 @@ impl LocalPass {
         Ok(())
     }
 
-    /// Draws the canvas of a tile, whose first pixel is `corner` in the picture of a frame, and binds it. `bell` is the file of
-    /// the bell that listed ghosts have, or of all bells.
+    /// Draws the canvas of a tile, whose first pixel is `corner` in the picture of a frame, and binds it. `bells` are
+    /// those that listed ghosts have.
     ///
     /// # Errors
     /// [`Error::Gl`](crate::Error::Gl) where the driver refuses.
     pub fn draw(
         &mut self,
         runner: &Runner,
-        bell: &str,
+        bells: Bells,
         corner: [i32; 2],
         [width, height]: [u32; 2],
         frame: Frame,
@@ -208,7 +209,8 @@ impl LocalPass {
                 self.doubles.bind_storage(GHOSTS);
                 self.lists.bind_storage(PARTIALS);
                 let step = format!("{step}u");
-                let mut defines = vec![("BELL", bell), ("DOUBLE", "1"), ("LIST_STEP", &step)];
+                let mut defines: Vec<(&str, &str)> = bells.defines().collect();
+                defines.extend([("DOUBLE", "1"), ("LIST_STEP", &step)]);
                 if self.in_doubles {
                     let pixels = width as usize * height as usize;
                     room(runner, &mut self.exact, 1 + (3 * pixels).div_ceil(2))?;

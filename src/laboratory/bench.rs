@@ -69,6 +69,10 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000), conflicts_with = "gaussians")]
     scenes: Option<u32>,
 
+    /// The first of these scenes: each has a number, by which it can be looked at again
+    #[arg(long, value_name = "NUMBER", default_value_t = 0, requires = "scenes")]
+    first: u32,
+
     /// Measure nothing but small bells, each where it reaches, against a copy
     #[arg(long, conflicts_with_all = ["gaussians", "scenes"])]
     local: bool,
@@ -183,7 +187,7 @@ fn measure(args: &Args, window: Window) -> Result<Report> {
         return Ok(report);
     }
     if let Some(count) = args.scenes {
-        choices::of_random_scenes(&stage, &mut report, count, args.size)?;
+        choices::of_random_scenes(&stage, &mut report, args.first..args.first.saturating_add(count), args.size)?;
         return Ok(report);
     }
     if args.local {

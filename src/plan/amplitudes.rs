@@ -4,6 +4,7 @@
 //! where it is cheap, the plan looks.
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 use std::time::Instant;
 
 use glam::DVec2;
@@ -32,20 +33,21 @@ pub(super) fn worth_a_try(groups: &[Group]) -> bool {
 }
 
 /// Whether to look at so many modes: where the plan needs to know them for any series at all, at more of them.
-pub(super) fn worth_looking(groups: &[Group], counts: &[u32], needed: bool) -> bool {
+pub(super) fn worth_looking(groups: &[Group], counts: &[u32], period: DVec2, needed: bool) -> bool {
     let modes: usize = counts.iter().map(|&count| count as usize).sum();
     let apart = groups.iter().filter(|group| !matches!(group.transform, Transform::Gather(_)));
-    let few = modes.saturating_mul(apart.map(|group| group.members.len()).sum()) <= EFFORT
-        && work(groups, counts) <= MOST_WORK;
-    modes <= MOST_MODES && (few || needed && work(groups, counts) <= MOST_WORK)
+    let few = modes.saturating_mul(apart.map(|group| group.members.len()).sum()) <= EFFORT;
+    modes <= MOST_MODES && (few || needed) && work(groups, counts, period) <= MOST_WORK
 }
 
 /// What a ghost takes for each mode, about, in nanoseconds.
 pub(super) const MODE: f64 = 3.0;
 
 /// What looking at so many modes costs about, in nanoseconds.
-pub(super) fn work(groups: &[Group], counts: &[u32]) -> f64 {
+pub(super) fn work(groups: &[Group], counts: &[u32], period: DVec2) -> f64 {
     const TRANSFORM: f64 = 15.0;
+    // Of each mode: what it adds, and what of it is kept.
+    const ALONE: f64 = 60.0;
     let one = |group: &Group| {
         if let Transform::Gather(_) = group.transform {
             return gather::cost(group, &group.transform, &CostModel { pass: 0.0, ..CostModel::default() });
@@ -53,10 +55,20 @@ pub(super) fn work(groups: &[Group], counts: &[u32]) -> f64 {
         let [n, m] = group.degree;
         let mine = counts.iter().take(n as usize + 1).map(|&count| count.min(m + 1));
         let (modes, ghosts) = (mine.map(f64::from).sum::<f64>(), group.members.len() as f64);
-        let tables = if let Bells::Radial(_) = group.bell.shape().modes() { TRANSFORM } else { 0.0 };
-        modes * (MODE * ghosts + tables)
+        let size = group.smallest / period;
+        let bell = group.bell.shape();
+        let tables = match bell.modes() {
+            Bells::Radial(_) => TRANSFORM * modes,
+            // All ghosts of it have one size.
+            Bells::Product(factor) if bell.tabulated() => {
+                factor.work(f64::from(n), size.x) + factor.work(f64::from(m), size.y)
+            }
+            Bells::Product(_) | Bells::None => 0.0,
+        };
+        MODE * modes * ghosts + tables
     };
-    groups.iter().map(one).sum()
+    let modes: f64 = counts.iter().map(|&count| f64::from(count)).sum();
+    ALONE * modes + groups.iter().map(one).sum::<f64>()
 }
 
 fn members(groups: &[Group]) -> usize {
@@ -71,6 +83,9 @@ pub(super) struct Amplitudes {
     modes: Modes,
     /// Harmonic by harmonic of x.
     values: Vec<Rgb>,
+    /// Of each mode and all that lie beyond it in its row: the sum, and the largest.
+    rest: Vec<Rgb>,
+    largest: Vec<f64>,
 }
 
 impl Amplitudes {
@@ -88,9 +103,11 @@ impl Amplitudes {
         let started = Instant::now();
         let sums = View { ghosts, counts, period, scale }.sums(groups);
         let kappas = (0..).zip(counts).flat_map(|(n, &count)| (0..count).map(move |m| kappa(n, m)));
-        let (terms, values) = sums.0.iter().zip(kappas).map(|(sums, kappa)| mode(sums, kappa)).unzip();
+        let (terms, values): (Vec<Mode>, Vec<Rgb>) =
+            sums.0.iter().zip(kappas).map(|(sums, kappa)| mode(sums, kappa)).unzip();
         let milliseconds = started.elapsed().as_secs_f64() * 1e3;
-        Self { modes: Modes::new(counts.to_vec(), terms, milliseconds), values }
+        let (rest, largest) = beyond(&values, counts);
+        Self { modes: Modes::new(counts.to_vec(), terms, milliseconds), values, rest, largest }
     }
 
     /// The modes themselves.
@@ -98,25 +115,25 @@ impl Amplitudes {
         &self.modes
     }
 
-    /// What f32 has to do with the kept modes.
-    pub fn strength(&self, counts: &[u32]) -> Strength {
+    /// What f32 has to do with modes that have these marginals.
+    pub fn strength([x, y]: &[Vec<Rgb>; 2]) -> Strength {
         let square = |rgb: Rgb| rgb.map(|value| value * value);
         let squares = |held: &[Rgb]| held.iter().fold([0.0; 3], |sum, &value| add(sum, square(value)));
-        let [x, y] = self.marginals(counts);
         let turning = |held: &[Rgb]| {
             (0u32..).zip(held).fold([0.0; 3], |sum, (n, &value)| add(sum, value.map(|value| f64::from(n) * value)))
         };
         Strength {
             total: x.iter().fold([0.0; 3], |sum, &value| add(sum, value)),
-            across: [squares(&x), squares(&y)].map(|squares| squares.map(f64::sqrt)),
-            turning: add(turning(&x), turning(&y)),
+            across: [squares(x), squares(y)].map(|squares| squares.map(f64::sqrt)),
+            turning: add(turning(x), turning(y)),
         }
     }
 
     /// The strongest modes, so few that what is left out stays within the budget, for each harmonic of x how many of y;
     /// and what is left out.
     pub fn kept(&self, budget: f64) -> (Vec<u32>, f64) {
-        let strongest = self.values.iter().map(|&value| largest(value)).fold(f64::MIN_POSITIVE, f64::max);
+        let strongest =
+            self.rows().filter_map(|row| self.largest.get(row.start)).fold(f64::MIN_POSITIVE, |a, &b| a.max(b));
         let (mut low, mut high) = ((1e-6 * budget / strongest / self.values.len() as f64).ln(), 0.0f64);
         for _ in 0..18 {
             let middle = 0.5 * (low + high);
@@ -132,7 +149,7 @@ impl Amplitudes {
     pub fn marginals(&self, counts: &[u32]) -> [Vec<Rgb>; 2] {
         let mut held = [vec![[0.0; 3]; counts.len()], vec![[0.0; 3]; counts[0] as usize]];
         for (n, (row, &kept)) in self.rows().zip(counts).enumerate() {
-            for (m, &value) in row.iter().take(kept as usize).enumerate() {
+            for (m, &value) in self.values[row].iter().take(kept as usize).enumerate() {
                 held[0][n] = add(held[0][n], value);
                 held[1][m] = add(held[1][m], value);
             }
@@ -141,18 +158,13 @@ impl Amplitudes {
     }
 
     /// The modes of each harmonic of x.
-    fn rows(&self) -> impl Iterator<Item = &[Rgb]> {
-        let mut rest = &self.values[..];
-        self.modes.counts().iter().map(move |&count| {
-            let (row, others) = rest.split_at(count as usize);
-            rest = others;
-            row
-        })
+    fn rows(&self) -> impl Iterator<Item = Range<usize>> {
+        rows(self.modes.counts())
     }
 
     /// The modes of at least some strength, and those that a never growing row has beside them; one at least.
     fn above(&self, threshold: f64) -> Vec<u32> {
-        let last = |row: &[Rgb]| row.iter().rposition(|&value| largest(value) >= threshold).map_or(0, |m| m as u32 + 1);
+        let last = |row: Range<usize>| self.largest[row].partition_point(|&largest| largest >= threshold) as u32;
         let mut counts: Vec<u32> = self.rows().map(last).collect();
         let mut most = 0;
         for count in counts.iter_mut().rev() {
@@ -166,9 +178,31 @@ impl Amplitudes {
     /// What is left out of each colour, the worst of them.
     fn left(&self, counts: &[u32]) -> f64 {
         let kept = counts.iter().copied().chain(std::iter::repeat(0));
-        let beyond = self.rows().zip(kept).flat_map(|(row, kept)| &row[kept as usize..]);
+        let beyond = self.rows().zip(kept).filter_map(|(row, kept)| self.rest[row].get(kept as usize));
         largest(beyond.fold([0.0; 3], |sum, &value| add(sum, value)))
     }
+}
+
+/// The modes of each harmonic of x, one row after the other.
+fn rows(counts: &[u32]) -> impl Iterator<Item = Range<usize>> {
+    let mut end = 0;
+    counts.iter().map(move |&count| {
+        let start = end;
+        end += count as usize;
+        start..end
+    })
+}
+
+/// Of each mode and all that lie beyond it in its row: the sum, and the largest.
+fn beyond(values: &[Rgb], counts: &[u32]) -> (Vec<Rgb>, Vec<f64>) {
+    let (mut rest, mut most) = (values.to_vec(), values.iter().copied().map(largest).collect::<Vec<f64>>());
+    for row in rows(counts) {
+        for k in row.rev().skip(1) {
+            rest[k] = add(rest[k], rest[k + 1]);
+            most[k] = most[k].max(most[k + 1]);
+        }
+    }
+    (rest, most)
 }
 
 /// The modes of groups alone, without what they add.
@@ -362,7 +396,8 @@ fn mode(sums: &[f64; 12], kappa: f64) -> (Mode, Rgb) {
     let part = |colour: usize| [0, 3, 6, 9].map(|part| sums[part + colour]);
     let term = |[re_re, im_re, re_im, im_im]: [f64; 4]| [re_re, -re_im, -im_re, im_im].map(|value| kappa * value);
     let bound = |[re_re, im_re, re_im, im_im]: [f64; 4]| {
-        let (sum, difference) = ((re_re - im_im).hypot(re_im + im_re), (re_re + im_im).hypot(im_re - re_im));
+        let length = |x: f64, y: f64| (x * x + y * y).sqrt();
+        let (sum, difference) = (length(re_re - im_im, re_im + im_re), length(re_re + im_im, im_re - re_im));
         0.5 * kappa * (sum + difference)
     };
     ([0, 1, 2].map(|colour| term(part(colour))), [0, 1, 2].map(|colour| bound(part(colour))))

@@ -37,6 +37,12 @@ impl Axis {
         Self { tails: factor.tails(highest, size), mean: factor.mean(size) }
     }
 
+    /// The same, looked at up to a harmonic.
+    fn up_to(mut self, highest: usize) -> Self {
+        self.tails.truncate(highest + 1);
+        self
+    }
+
     /// A bound of the sum of all coefficients.
     fn total(&self) -> f64 {
         self.mean + self.tails[0]
@@ -59,12 +65,13 @@ impl<'a> Decay<'a> {
         }
     }
 
-    /// What finding the fewest modes costs about, in nanoseconds, where so many harmonics are found along both axes.
-    pub fn work(&self, harmonics: usize) -> f64 {
-        let harmonics = harmonics as f64;
+    /// What finding the fewest modes costs about, in nanoseconds, where so many harmonics are found along either axis.
+    pub fn work(&self, harmonics: [f64; 2]) -> f64 {
+        let [n, m] = harmonics.map(|harmonics| harmonics.min(f64::from(HIGHEST_DEGREE)));
         match *self {
-            Self::Product { factor, size } => factor.work(size.min_element()) * harmonics + 5000.0,
-            Self::Radial { radial, .. } => 40.0 * radial.work() + 10.0 * harmonics,
+            // Once to find them, and once to bound what they leave out.
+            Self::Product { factor, size } => 2.0 * (factor.work(n, size.x) + factor.work(m, size.y)) + 3000.0,
+            Self::Radial { radial, .. } => 40.0 * radial.work() + 10.0 * (n + m),
             Self::None { .. } => 0.0,
         }
     }
@@ -72,11 +79,8 @@ impl<'a> Decay<'a> {
     /// What finding the fewest modes is expected to cost at least, before it is tried.
     pub fn expected_work(&self, error: f64) -> f64 {
         match *self {
-            Self::Product { factor, size } => {
-                let harmonics = factor.degree(error, size.x) + factor.degree(error, size.y);
-                self.work(harmonics.min(f64::from(2 * HIGHEST_DEGREE)) as usize)
-            }
-            Self::Radial { .. } | Self::None { .. } => self.work(0),
+            Self::Product { factor, size } => self.work([factor.degree(error, size.x), factor.degree(error, size.y)]),
+            Self::Radial { .. } | Self::None { .. } => self.work([0.0; 2]),
         }
     }
 
@@ -84,8 +88,9 @@ impl<'a> Decay<'a> {
     pub fn held_work(&self, group: &Group) -> f64 {
         let [n, m] = group.degree.map(|degree| f64::from(degree + 1));
         match *self {
-            Self::Product { factor, size } => factor.work(size.min_element()) * (n + m),
-            Self::Radial { radial, .. } => radial.work() * (n * m).min(f64::from(MANY)),
+            Self::Product { factor, size } => factor.work(n, size.x) + factor.work(m, size.y),
+            Self::Radial { radial, .. } if n * m > f64::from(MANY) => ACROSS * radial.work() * (steps(n) + steps(m)),
+            Self::Radial { radial, .. } => radial.work() * n * m,
             Self::None { .. } => 0.0,
         }
     }
@@ -158,6 +163,17 @@ impl<'a> Decay<'a> {
 
 /// More modes than this are bounded, and not looked at one by one.
 const MANY: u32 = 20_000;
+/// How many envelopes it takes to bound what lies across a harmonic.
+const ACROSS: f64 = 66.0;
+/// From this harmonic on not each of them is bounded: but those that are a little farther than the last by as much as the last.
+const CLOSELY: u32 = 16;
+const FARTHER: f64 = 1.06;
+
+/// About how many of so many harmonics are bounded.
+fn steps(harmonics: f64) -> f64 {
+    let closely = f64::from(CLOSELY);
+    harmonics.min(closely) + (harmonics / closely).max(1.0).ln() / FARTHER.ln()
+}
 
 /// What the modes of each harmonic of x, and of y, hold at most, by a bound m of |ĝ| that never grows: beside harmonic n
 /// at z = a, Σ_m κ_m m(√(a² + b²m²)) is no more than m(a) and twice the integral.
@@ -166,11 +182,19 @@ fn envelopes(radial: &dyn Radial, size: DVec2, degree: [u32; 2]) -> [Vec<f64>; 2
     let volume = size.element_product();
     let axis = |degree: u32, along: f64, across: f64| -> Vec<f64> {
         let doubled = |n: u32| if n == 0 { 1.0 } else { 2.0 };
-        let held = |n: u32| {
+        let bound = |n: u32| {
             let a = along * f64::from(n);
-            doubled(n) * volume * (radial.envelope(a) + 2.0 / across * radial.envelope_across(a))
+            volume * (radial.envelope(a) + 2.0 / across * radial.envelope_across(a))
         };
-        (0..=degree).map(held).collect()
+        // No envelope grows.
+        let (mut last, mut held) = (0, bound(0));
+        let at = |n: u32| {
+            if n < CLOSELY || f64::from(n) >= FARTHER * f64::from(last) {
+                (last, held) = (n, bound(n));
+            }
+            doubled(n) * held
+        };
+        (0..=degree).map(at).collect()
     };
     [axis(degree[0], turn.x, turn.y), axis(degree[1], turn.y, turn.x)]
 }
@@ -193,22 +217,36 @@ fn kept_product(factor: &dyn Factor, size: DVec2, error: f64) -> Result<Vec<u32>
     Ok(if beyond_product(&x, &y, &counts) > error { above(&columns, &rows, 0.0) } else { counts })
 }
 
+/// Parts of the error that may lie beyond either axis; and by what the degree of a smooth bell grows at most from the first to the
+/// last of them.
+const PARTS: [f64; 4] = [0.3, 0.15, 0.07, 0.03];
+const SMOOTH: f64 = 1.8;
+
 /// Both axes up to degrees whose rectangle leaves out less than the error.
 fn axes_within(factor: &dyn Factor, size: DVec2, error: f64) -> Result<(Axis, Axis)> {
     // Beyond either axis a part of the error is left out; a smaller part makes the degree higher, and leaves more of
     // the error to modes within the rectangle, where n and m are both high.
+    let degrees = |part: f64| [size.x, size.y].map(|size| factor.degree(part * error, size));
+    // Of a smooth bell the degree hardly grows, and one look at its coefficients does for all parts.
+    let [all, most] = [PARTS[0], PARTS[PARTS.len() - 1]].map(|part| degrees(part)[0].max(degrees(part)[1]));
+    let mut looked_at = None;
     let mut least = f64::INFINITY;
-    for part in [0.3, 0.15, 0.07, 0.03] {
-        let degrees = [size.x, size.y].map(|size| factor.degree(part * error, size));
-        if degrees[0].max(degrees[1]) > f64::from(HIGHEST_DEGREE) {
-            least = least.min(degrees[0].max(degrees[1]));
+    for part in PARTS {
+        let wanted = degrees(part);
+        if wanted[0].max(wanted[1]) > f64::from(HIGHEST_DEGREE) {
+            least = least.min(wanted[0].max(wanted[1]));
             break;
         }
-        let [highest_x, highest_y] = degrees.map(|degree| degree.ceil() as u32);
-        let (x, y) = (Axis::new(factor, highest_x, size.x), Axis::new(factor, highest_y, size.y));
-        if x.tails[highest_x as usize] * y.total() + y.tails[highest_y as usize] * x.total() < 0.8 * error {
-            return Ok((x, y));
+        let highest = wanted.map(|degree| degree.ceil() as usize);
+        let (x, y) = looked_at.take().unwrap_or_else(|| {
+            let [n, m] = if most <= SMOOTH * all { degrees(PARTS[PARTS.len() - 1]) } else { wanted };
+            let axis = |degree: f64, size: f64| Axis::new(factor, degree.ceil() as u32, size);
+            (axis(n, size.x), axis(m, size.y))
+        });
+        if x.tails[highest[0]] * y.total() + y.tails[highest[1]] * x.total() < 0.8 * error {
+            return Ok((x.up_to(highest[0]), y.up_to(highest[1])));
         }
+        looked_at = Some((x, y)).filter(|(x, y)| x.tails.len() > highest[0] + 1 || y.tails.len() > highest[1] + 1);
     }
     Err(too_high(least))
 }

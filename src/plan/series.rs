@@ -48,10 +48,10 @@ impl Wide {
             gather::choose_in_doubles(&mut groups, period, share::GATHERING * request.tolerance, amplitudes::MODE);
         // By weights there may be no series at all.
         let needed = rounding > (1.0 - NEEDED) * request.tolerance;
-        let afforded = survey.effort.affords(amplitudes::work(&groups, &counts));
-        if !afforded || !amplitudes::worth_looking(&groups, &counts, needed) {
+        if !amplitudes::worth_looking(&groups, &counts, period, needed) {
             return None;
         }
+        survey.effort.spend(amplitudes::work(&groups, &counts, period)).ok()?;
         let amplitudes = Amplitudes::new(problem.ghosts(), &groups, &counts, period, survey.weighed.scale);
         let beyond = terms::error(&groups, period, &counts);
         Some(Self {
@@ -69,7 +69,8 @@ impl Wide {
         let counts = self.amplitudes.modes().counts();
         let degree = [counts.len() as u32 - 1, counts[0] - 1];
         let doubles = rounding::of_doubles(&self.groups, degree);
-        rounding::of_modes(evaluator, &self.amplitudes.strength(counts), degree) + doubles
+        let strength = Amplitudes::strength(&self.amplitudes.marginals(counts));
+        rounding::of_modes(evaluator, &strength, degree) + doubles
     }
 
     /// Whether it leaves enough of what may be used up.
@@ -86,9 +87,9 @@ impl Wide {
             let [n, m] = group.degree;
             group.degree = [n.min(counts.len() as u32 - 1), m.min(counts[0] - 1)];
         }
-        let marginals = Marginals::of(self.amplitudes.marginals(&counts));
-        let (modes, strength) = (Some(self.amplitudes.modes().clone()), Some(self.amplitudes.strength(&counts)));
-        let (marginals, gathering) = (Some(marginals), self.gathering);
+        let marginals = self.amplitudes.marginals(&counts);
+        let (modes, strength) = (Some(self.amplitudes.modes().clone()), Some(Amplitudes::strength(&marginals)));
+        let (marginals, gathering) = (Some(Marginals::of(marginals)), self.gathering);
         Terms { groups, modes, strength, marginals, truncation: self.beyond + left, counts, gathering }
     }
 }

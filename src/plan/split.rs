@@ -15,7 +15,7 @@ use super::direct::{HALF_A_UNIT, STORED};
 use super::weigh::Weighed;
 use super::{
     CostModel, Evaluator, Group, Layer, Plan, Precision, Prediction, Request, Transform, cost, direct, gather, local,
-    period, share,
+    period, share, terms,
 };
 use crate::frame::Frame;
 use crate::problem::Problem;
@@ -183,10 +183,7 @@ impl<'a> Cutting<'a> {
             let decay = Decay::new(group, period);
             survey.effort.expect(decay.expected_work(part / group.weight)).ok()?;
             let kept = decay.kept(part / group.weight).ok();
-            survey
-                .effort
-                .spend(decay.work(kept.as_ref().map_or(0, |counts| counts.len() + counts[0] as usize)))
-                .ok()?;
+            survey.effort.spend(decay.work(kept.as_deref().map_or([0.0; 2], terms::harmonics))).ok()?;
             needs.push(kept);
         }
         let level = LOCAL * request.tolerance / CROWDING;

@@ -127,6 +127,11 @@ pub(super) fn rectangle(groups: &mut [Group], degree: [u32; 2]) -> Vec<u32> {
     vec![degree[1] + 1; degree[0] as usize + 1]
 }
 
+/// How many harmonics kept modes have along either axis.
+pub(super) fn harmonics(counts: &[u32]) -> [f64; 2] {
+    [counts.len() as f64, f64::from(counts[0])]
+}
+
 /// Groups that are looked at together, before anyone asks whether that is still worth it.
 const AT_ONCE: usize = 32;
 
@@ -145,7 +150,7 @@ pub(super) fn fewest(groups: &mut [Group], period: DVec2, budget: f64, effort: &
         let kept: Vec<Result<Vec<u32>>> = groups.par_iter().map(kept).collect();
         for (group, counts) in groups.iter_mut().zip(kept) {
             let counts = counts?;
-            effort.spend(Decay::new(group, period).work(counts.len() + counts[0] as usize))?;
+            effort.spend(Decay::new(group, period).work(harmonics(&counts)))?;
             if union.len() < counts.len() {
                 union.resize(counts.len(), 1);
             }

@@ -5,12 +5,12 @@ use glam::DVec2;
 use super::settings::Settings;
 use crate::choices::Normalize;
 use crate::gpu::composite::{Composite, Variant};
-use crate::gpu::field::Source;
+use crate::gpu::field::{Bells, Source};
 use crate::gpu::layout::{
     Binding, DirectGhost, DoubleGhost, NORMALIZE_CLAMP, NORMALIZE_MINMAX, NORMALIZE_NONE, PROFILE_HALVINGS,
     SpectralGhost,
 };
-use crate::plan::{self, Evaluator, Group, Layer, Local, Mode, Modes, Plan, Precision, Series};
+use crate::plan::{self, Evaluator, Group, Layer, Mode, Modes, Plan, Precision, Series};
 use crate::scene::Ghost;
 use crate::series::{Bell, Distinct, Profile, phase};
 
@@ -29,7 +29,7 @@ pub(super) fn source(plan: &Plan, many_ghosts: bool) -> Source {
     let direct = if double { "\"evaluators/direct_double.glsl\"" } else { "\"evaluators/direct.glsl\"" };
     let exact = plan.is_exact();
     let of = |evaluator| Source { exact, ..Source::of(evaluator) };
-    let summed = |evaluator| Source { bell: Some(bell_file(plan)), many_ghosts, double, ..of(evaluator) };
+    let summed = |evaluator| Source { bells: Some(bells(plan.summed_groups())), many_ghosts, double, ..of(evaluator) };
     let series = plan.series().map(series_file);
     let local = LOCAL[usize::from(plan.local().is_some_and(|local| local.precision == Precision::Double))];
     let has_direct = plan.layers().iter().any(|layer| matches!(layer, Layer::Direct(_)));
@@ -59,29 +59,14 @@ fn series_file(series: &Series) -> &'static str {
     }
 }
 
-/// The one bell that the summed ghosts have, or all of them.
-fn bell_file(plan: &Plan) -> &'static str {
-    match one_kind(plan) {
-        Some(bell) => bell.shape().shader(),
-        None => "bells/any.glsl",
+/// The bells that groups of ghosts have.
+pub(super) fn bells<'a>(groups: impl IntoIterator<Item = &'a Group>) -> Bells {
+    let (mut kinds, mut first) = (0u32, &Bell::Gaussian);
+    for Group { bell, .. } in groups {
+        first = if kinds == 0 { bell } else { first };
+        kinds |= 1 << bell.kind();
     }
-}
-
-/// The bell's file that the listed ghosts of a local layer have, or all of them.
-pub(super) fn local_bell(local: &Local) -> &'static str {
-    local_kind(local).map_or("bells/any.glsl", |bell| bell.shape().shader())
-}
-
-/// The bell of a local layer's ghosts if they are of one kind.
-pub(super) fn local_kind(local: &Local) -> Option<&Bell> {
-    let bell = local.groups.first().map_or(&Bell::Gaussian, |group| &group.bell);
-    local.groups.iter().all(|group| group.bell.kind() == bell.kind()).then_some(bell)
-}
-
-/// The bell of the summed ghosts if they are of one kind.
-fn one_kind(plan: &Plan) -> Option<&Bell> {
-    let bell = plan.summed_groups().next().map_or(&Bell::Gaussian, |group| &group.bell);
-    plan.summed_groups().all(|group| group.bell.kind() == bell.kind()).then_some(bell)
+    if kinds.count_ones() > 1 { Bells::several(kinds) } else { Bells::one(first.shape().shader()) }
 }
 
 /// The composite that the settings ask for.

@@ -309,7 +309,7 @@ impl Field {
             let (corner, size) = ([tile.x, tile.y], [tile.width, tile.height]);
             let alone = plan.layers().len() == 1;
             self.local.set_in_doubles(local.precision == Precision::Double && !alone);
-            self.local.draw(runner, convert::local_bell(local), corner, size, frame)?;
+            self.local.draw(runner, convert::bells(&local.groups), corner, size, frame)?;
         }
         if plan.series().is_none() && plan.local().is_none() || plan.summed() > 0 {
             evaluators.direct([tile.x, tile.y], frame)?;

@@ -64,7 +64,7 @@ pub(super) fn upload(plan: &Plan, local: &Local, frame: Frame, pass: &mut LocalP
         let single: Vec<[f32; 4]> = shapes.rows.iter().map(|row| row.map(|x| x as f32)).collect();
         return pass.set_drawn(&Drawn { ghosts: &ghosts, kinds: &kinds }, &single);
     }
-    let kinds = if convert::local_kind(local).is_some() { 1 } else { Bell::KINDS };
+    let kinds = if convert::bells(&local.groups).are_several() { Bell::KINDS } else { 1 };
     let lists = Lists::new(&placed, kinds, frame, plan::block_shift(local.side()));
     let mut ghosts: Vec<_> =
         placed.par_iter().map(|placed| double_ghost(placed.ghost, placed.weight, placed.bell)).collect();

@@ -200,9 +200,9 @@ pub trait Factor: Sync {
     /// of the same sizes.
     fn mean(&self, size: f64) -> f64;
 
-    /// What finding out how the coefficients of a size in periods fall off costs for each harmonic, about, in nanoseconds.
-    fn work(&self, _size: f64) -> f64 {
-        300.0
+    /// What finding out how the coefficients of a size in periods fall off up to a harmonic costs, about, in nanoseconds.
+    fn work(&self, highest: f64, _size: f64) -> f64 {
+        150.0 * highest
     }
 
     /// About the harmonic beyond which no more than `error` is left.

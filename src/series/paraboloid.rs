@@ -87,6 +87,6 @@ impl Radial for Paraboloid {
 
     /// √z |J2(z)| is below 0.86.
     fn envelope(&self, z: f64) -> f64 {
-        FRAC_PI_2 * (8.0 * 0.86 * z.powf(-2.5)).min(1.0)
+        FRAC_PI_2 * (8.0 * 0.86 / (z * z * z.sqrt())).min(1.0)
     }
 }

@@ -1,5 +1,6 @@
 //! Bells that are periodic themselves, with the period of the series: they have no copies, and no meaning without it.
 
+use std::cell::RefCell;
 use std::f64::consts::{PI, SQRT_2, TAU};
 
 use glam::DVec2;
@@ -46,8 +47,8 @@ trait Periodic: Sync {
     /// a_n and b_n of the factor for n = 0 ..= `highest`.
     fn coefficients(&self, highest: u32, size: f64) -> Vec<[f64; 2]>;
 
-    /// What a harmonic of the tails of a size in periods costs, about, in nanoseconds.
-    fn work(&self, size: f64) -> f64;
+    /// What the coefficients of a size in periods up to a harmonic cost, about, in nanoseconds.
+    fn work(&self, highest: f64, size: f64) -> f64;
 
     /// What the shader needs to know beside offset, size and period.
     fn parameter(&self) -> f64;
@@ -71,8 +72,8 @@ impl Periodic for VonMises {
         ive_all(highest, (TAU * size).powi(-2)).into_iter().map(|mean| [mean, 0.0]).collect()
     }
 
-    fn work(&self, _size: f64) -> f64 {
-        1000.0
+    fn work(&self, highest: f64, _size: f64) -> f64 {
+        300.0 + 12.0 * highest
     }
 
     fn parameter(&self) -> f64 {
@@ -93,12 +94,12 @@ impl Periodic for SineGaussian {
     }
 
     fn coefficients(&self, highest: u32, size: f64) -> Vec<[f64; 2]> {
-        by_samples(highest, samples(highest, size), |x| self.factor(x, size))
+        by_samples(highest, samples(highest, size), |sine| (-0.5 * ((sine - self.mean) / (TAU * size)).powi(2)).exp())
     }
 
-    /// Every harmonic meets every sample.
-    fn work(&self, size: f64) -> f64 {
-        1000.0 + 6.0 * f64::from(samples(0, size))
+    /// A sample is a sine and an exponential, and a part of a fast transform.
+    fn work(&self, highest: f64, size: f64) -> f64 {
+        1000.0 + 15.0 * f64::from(samples(highest as u32, size))
     }
 
     fn parameter(&self) -> f64 {
@@ -113,19 +114,31 @@ fn samples(highest: u32, size: f64) -> u32 {
     (needed as u32).next_power_of_two()
 }
 
-/// a_n and b_n of a smooth function of period 1 by the trapezium rule, which converges faster than any power; `highest` is
-/// below `samples`.
+/// a_n and b_n of a smooth function of the sine of 2πx, by the trapezium rule, which converges faster than any power; `highest` is
+/// below `samples`, a multiple of 4.
 fn by_samples(highest: u32, samples: u32, function: impl Fn(f64) -> f64) -> Vec<[f64; 2]> {
-    let values = (0..samples).map(|i| function(f64::from(i) / f64::from(samples)));
+    let (whole, quarter) = (samples as usize, samples as usize / 4);
+    let mut waves = vec![Complex64::ZERO; whole];
+    for k in 0..=quarter {
+        let sine = (TAU * (k as f64 / whole as f64)).sin();
+        // What rises in a quarter of a turn comes back three times, twice with another sign.
+        let [above, below] = [sine, -sine].map(|sine| Complex64::from(function(sine)));
+        (waves[k], waves[2 * quarter - k]) = (above, above);
+        (waves[2 * quarter + k], waves[(whole - k) % whole]) = (below, below);
+    }
     let mean = |sum: f64| sum / f64::from(samples);
     if highest == 0 {
-        return vec![[mean(values.sum()), 0.0]];
+        return vec![[mean(waves.iter().map(|wave| wave.re).sum()), 0.0]];
     }
-    let mut waves: Vec<Complex64> = values.map(Complex64::from).collect();
-    FftPlanner::new().plan_fft_forward(waves.len()).process(&mut waves);
+    PLANNER.with_borrow_mut(|planner| planner.plan_fft_forward(whole)).process(&mut waves);
     waves.truncate(highest as usize + 1);
     // Σ f e^(−2πinx) is Σ f cos − i Σ f sin.
     waves.into_iter().map(|wave| [mean(wave.re), mean(-wave.im)]).collect()
+}
+
+thread_local! {
+    /// A plan has hundreds of sizes, of a few numbers of samples.
+    static PLANNER: RefCell<FftPlanner<f64>> = RefCell::new(FftPlanner::new());
 }
 
 impl<B: Periodic> Shape for B {
@@ -206,9 +219,9 @@ impl<B: Periodic> Factor for B {
         Periodic::coefficients(self, 0, size)[0][0]
     }
 
-    /// Each harmonic asks for those that lie beyond it, too.
-    fn work(&self, size: f64) -> f64 {
-        Periodic::work(self, size)
+    /// That asks for what lies beyond, too.
+    fn work(&self, highest: f64, size: f64) -> f64 {
+        Periodic::work(self, highest + 2.0 / size.max(SineGaussian::NARROWEST), size)
     }
 
     /// Where a Gaussian of the same size has no more than ε left.

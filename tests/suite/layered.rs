@@ -84,7 +84,7 @@ fn all_three_kinds_stand_beside_each_other() {
         size: period,
         ..ghost
     }));
-    let plan = planned(&ghosts, model(0.5, 0.1), 1e-4);
+    let plan = planned(&ghosts, model(0.3, 0.1), 1e-4);
     assert_eq!(kinds(&plan), [Evaluator::Direct, Evaluator::Grid, Evaluator::Local], "{:?}", plan.costs);
     hold("all three", &plan);
 }

@@ -26,7 +26,7 @@ fn mixed(seed: u64, small: usize, bell: &Bell) -> Vec<Ghost> {
 /// A cost model to which bells are cheap, and a series of few terms by one evaluator cheaper still; of a machine so slow
 /// that any planning is worth its while.
 fn in_favour_of(evaluator: Evaluator) -> CostModel {
-    let mut model = CostModel { bell: 0.1, pass: 1.0, quad: 1e4, ..CostModel::default() };
+    let mut model = CostModel { bell: 0.1, pass: 1.0, quad: 2e4, ..CostModel::default() };
     match evaluator {
         Evaluator::Direct => model.bell = 1e-3,
         Evaluator::Local => (model.splat, model.quad, model.canvas) = (1e-3, 1e-3, 1e-3),

@@ -1,5 +1,6 @@
 //! How well plans choose, and how far what they predict is from what is measured: over random scenes.
 
+use std::ops::Range;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -51,14 +52,20 @@ struct Outcome {
     expected: f64,
 }
 
-/// Plans random scenes, of one size if it is given, and renders each by every evaluator that is not hopeless.
-pub(super) fn of_random_scenes(stage: &Stage, report: &mut Report, count: u32, size: Option<[u32; 2]>) -> Result<()> {
+/// Plans the random scenes of these numbers, of one size if it is given, and renders each by every evaluator that is not
+/// hopeless.
+pub(super) fn of_random_scenes(
+    stage: &Stage,
+    report: &mut Report,
+    numbers: Range<u32>,
+    size: Option<[u32; 2]>,
+) -> Result<()> {
     let progress = Progress::start(false);
     progress.say("random scenes");
-    progress.measured(count as usize);
-    let mut outcomes = Vec::new();
-    for seed in 0..u64::from(count) {
-        outcomes.push(outcome(stage, seed, size)?);
+    progress.measured(numbers.len());
+    let (count, mut outcomes) = (numbers.len(), Vec::new());
+    for seed in numbers {
+        outcomes.push(outcome(stage, seed.into(), size)?);
         progress.advance(1);
     }
     outcomes.sort_by(|a, b| b.over.of_medians.total_cmp(&a.over.of_medians));
@@ -69,7 +76,13 @@ pub(super) fn of_random_scenes(stage: &Stage, report: &mut Report, count: u32, s
     }
     let broken: Vec<&str> = outcomes.iter().flat_map(|outcome| &outcome.broken).map(String::as_str).collect();
     let looseness = looseness(&outcomes);
-    let told = ["The worst first; --csv and --json have them all.", &looseness].into_iter().chain(broken);
+    let floors = outcomes.iter().filter_map(|outcome| {
+        let (name, measured) = (&outcome.name, outcome.measured);
+        Some(format!("A floor was named: {name}: {:.1e}, and {measured:.1e} measured there", outcome.floor?))
+    });
+    let floors: Vec<String> = floors.collect();
+    let told = ["The worst first; --csv and --json have them all.", &looseness].into_iter();
+    let told = told.chain(broken).chain(floors.iter().map(String::as_str));
     report.table(table.note(told.collect::<Vec<_>>().join("\n")));
     report.table(planning(&mut outcomes));
     bars(&outcomes, report);

@@ -129,17 +129,25 @@ pub(super) struct Summed {
     ghosts: usize,
     /// In Gaussians of 32-bit floats.
     bells: f64,
+    /// What its loops take to end, in the same; and of which kinds of bells there is one.
+    loops: f64,
+    kinds: u32,
 }
 
 impl Summed {
     pub fn add(&mut self, group: &Group, precision: Precision) {
+        let (bell, kind) = (in_gaussians(&group.bell, precision), 1 << group.bell.kind());
         self.ghosts += group.ghosts;
-        self.bells += group.ghosts as f64 * in_gaussians(&group.bell, precision);
+        self.bells += group.ghosts as f64 * bell;
+        if self.kinds & kind == 0 {
+            self.kinds |= kind;
+            self.loops += ENDING * bell;
+        }
     }
 
     /// What they cost.
     pub fn nanoseconds(&self, frame: Frame, model: &CostModel) -> f64 {
-        frame.window.pixels() as f64 * (self.bells * slower(self.ghosts) + AROUND_BELLS) * model.bell
+        frame.window.pixels() as f64 * (self.bells * slower(self.ghosts) + self.loops + AROUND_BELLS) * model.bell
     }
 }
 
@@ -215,8 +223,10 @@ pub(super) fn reaching(group: &Group, reached: f64, floats: Precision, model: &C
 /// on llvmpipe.
 const LISTED: f64 = 6.0;
 
-/// What `direct` does at a pixel beside its bells, in bells: 2 to 3 on llvmpipe, for 1 to 6 ghosts.
-const AROUND_BELLS: f64 = 2.5;
+/// What `direct` does at a pixel beside its bells, in Gaussians; and how many bells of each kind a loop computes until it ends: on
+/// llvmpipe, which goes once through each of two loops that have nothing to do, for 2 to 8 ghosts.
+const AROUND_BELLS: f64 = 3.0;
+const ENDING: f64 = 2.0;
 
 /// How many times as long `direct` takes for a bell where there are more ghosts than a uniform block holds: 3 to 5 times
 /// on llvmpipe, and a graphics card has other reasons to take the series then.

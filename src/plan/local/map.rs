@@ -40,7 +40,7 @@ const FAR: f64 = 0.005;
 const DOUBLE: f64 = 5e-9;
 
 /// Ghosts from which on the work is shared, and by how many: so many for any number of cores.
-const MANY: usize = 1024;
+const MANY: usize = 128;
 const CHUNKS: usize = 4;
 
 /// The worst over all places.
