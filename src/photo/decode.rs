@@ -224,6 +224,12 @@ impl<T: Sample> Raster<T> {
     }
 }
 
+/// Whether what was the width becomes the height.
+pub(super) fn is_quarter_turn(turn: Orientation) -> bool {
+    use Orientation::{Rotate90, Rotate90FlipH, Rotate270, Rotate270FlipH};
+    matches!(turn, Rotate90 | Rotate270 | Rotate90FlipH | Rotate270FlipH)
+}
+
 /// Turns and mirrors a picture as its EXIF or TIFF orientation asks.
 fn upright(width: u32, height: u32, pixels: Vec<[f32; 4]>, turn: Orientation) -> (u32, u32, Vec<[f32; 4]>) {
     if turn == Orientation::NoTransforms {

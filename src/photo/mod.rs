@@ -27,6 +27,7 @@
 //! Display formats and Radiance HDR write NaN, −∞ and negative values as 0, and +∞ as the largest value they hold.
 
 mod bad;
+mod camera;
 mod cicp;
 mod decode;
 mod display;
@@ -52,6 +53,7 @@ use glam::DMat3;
 
 pub(crate) use bad::not_finite;
 pub use bad::{BadKind, BadPixels, survey};
+pub use camera::View;
 pub use format::{Depth, Format};
 pub use lost::lost;
 pub use primaries::Primaries;
@@ -113,6 +115,8 @@ pub struct Source {
     pub space: Option<String>,
     /// What a person ought to know of how the file was read: what was damaged, missing, or taken for something else.
     pub notes: Vec<String>,
+    /// What it says of the camera; [`Photo::view`] tells what follows.
+    camera: Option<camera::Camera>,
     /// Whether it is more to be written fast than small.
     quick: bool,
     /// Everything else that an OpenEXR file held.
@@ -148,6 +152,7 @@ impl Source {
             picture: None,
             space: None,
             notes: Vec::new(),
+            camera: None,
             quick: false,
             exr: None,
             radiance: None,

@@ -7,6 +7,7 @@
 //! | `guard` | whether a block can be what it says |
 //! | `unpack` | a block's bytes, by the decoders of the `exr` crate |
 //! | `picture` | blocks into pixels and kept channels; with `lines` and `chroma` |
+//! | `camera` | what attributes say of the field of view |
 //! | `read`, `write` | a file into a photo, and back |
 //!
 //! One layer becomes the photo's pixels ([`layer`]). The other channels of its part are kept as bytes, the other parts
@@ -17,6 +18,7 @@
 //! Deep data is refused.
 
 mod blocks;
+mod camera;
 mod candidates;
 mod chroma;
 mod guard;

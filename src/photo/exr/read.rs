@@ -18,7 +18,7 @@ use super::layer::{Choice, Colours, Layer, choose};
 use super::picture::Picture;
 use super::unpack::{is_plain, unpack};
 use super::write::zero_chunk;
-use super::{Rest, explain};
+use super::{Rest, camera, explain};
 use crate::frame::{Frame, Window};
 
 /// Blocks that are decompressed together: enough to keep every thread busy, few enough to stay small.
@@ -182,6 +182,7 @@ fn source(layer: &Layer, headers: &[Header], options: &ReadOptions) -> (Source, 
         grey: layer.colours == Colours::Grey,
         primaries,
         pixel_aspect,
+        camera: camera::of(header),
         ..Source::plain()
     };
     (source, notes)

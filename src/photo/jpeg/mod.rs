@@ -60,6 +60,7 @@ pub(super) fn read(mut reader: impl BufRead + Seek, options: &ReadOptions) -> Re
     let encoding = tags::encoding(&walk, &shown, options, &mut notes);
     let mut photo = into_photo(decoded, &walk, &encoding, shown.orientation)?;
     photo.source.notes.append(&mut notes);
+    photo.source.camera = shown.camera;
     gain::apply(&walk, shown.orientation, encoding.to_rec709(), &mut photo);
     Ok(photo)
 }

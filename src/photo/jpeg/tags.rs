@@ -6,6 +6,7 @@
 use exif::{Context, Exif, In, Reader, Tag, Value};
 use image::metadata::Orientation;
 
+use super::super::camera::Camera;
 use super::super::decode::Encoding;
 use super::super::icc;
 use super::super::transfer::Curve;
@@ -21,6 +22,8 @@ const APP2: u8 = 0xe2;
 /// What a file's Exif says of how to show it.
 pub(super) struct Shown {
     pub orientation: Orientation,
+    /// What the picture was taken with, as it lies once it is upright.
+    pub camera: Option<Camera>,
     space: Space,
 }
 
@@ -36,13 +39,16 @@ enum Space {
 
 impl Shown {
     pub fn of(walk: &Walk, notes: &mut Vec<String>) -> Self {
-        let plain = Self { orientation: Orientation::NoTransforms, space: Space::Srgb };
+        let plain = Self { orientation: Orientation::NoTransforms, camera: None, space: Space::Srgb };
         let Some(raw) = walk.named(APP1, b"Exif\0").next() else { return plain };
         let raw = raw.get(1..).unwrap_or_default().to_vec();
         // What can be read of damaged Exif is better than nothing.
         let read = Reader::new().continue_on_error(true).read_raw(raw);
         match read.or_else(|error| error.distill_partial_result(|_| {})) {
-            Ok(exif) => Self { orientation: orientation(&exif), space: space(&exif) },
+            Ok(exif) => {
+                let orientation = orientation(&exif);
+                Self { orientation, camera: Camera::of_fields(&exif, orientation), space: space(&exif) }
+            }
             Err(error) => {
                 notes.push(format!(
                     "its Exif cannot be read, orientation and colour space are taken as the usual: {error}"

@@ -12,6 +12,7 @@ use glam::DVec2;
 use image::metadata::Orientation;
 use png::{BitDepth, CodingIndependentCodePoints, ColorType, Info, SrgbRenderingIntent, Transformations};
 
+use super::camera::Camera;
 use super::decode::{Encoding, Raster};
 use super::display::{self, Code, Look, Samples};
 use super::read::check_size;
@@ -50,30 +51,34 @@ pub(super) fn read(mut reader: impl BufRead + Seek, options: &ReadOptions) -> Re
     let encoding = encoding(info, channels < 3, options, &mut notes);
     let size = reader.output_buffer_size().ok_or("the picture does not fit into memory")?;
     let alpha = Alpha::Straight;
+    let (turn, camera);
     let mut photo = if depth == BitDepth::Sixteen {
         let mut samples = zeroed::<u16>(size / 2)?;
         reader.next_frame(bytemuck::cast_slice_mut(&mut samples))?;
-        let turn = orientation(&mut reader);
+        (turn, camera) = exif(&mut reader);
         samples.iter_mut().for_each(|code| *code = u16::from_be(*code));
         Raster { width, height, channels, samples, planar: false }.into_photo(Format::Png, alpha, &encoding, turn)?
     } else {
         let mut samples = zeroed::<u8>(size)?;
         reader.next_frame(&mut samples)?;
-        let turn = orientation(&mut reader);
+        (turn, camera) = exif(&mut reader);
         Raster { width, height, channels, samples, planar: false }.into_photo(Format::Png, alpha, &encoding, turn)?
     };
+    photo.source.camera = camera;
     photo.source.notes.append(&mut notes);
     Ok(photo)
 }
 
 /// What Exif says, which may stand behind the picture: third edition, 5.6.
-fn orientation(reader: &mut png::Reader<impl BufRead + Seek>) -> Orientation {
+fn exif(reader: &mut png::Reader<impl BufRead + Seek>) -> (Orientation, Option<Camera>) {
     if reader.info().exif_metadata.is_none() && reader.info().animation_control.is_none() {
         // What is wrong behind the picture does it no harm.
         let _ = reader.finish();
     }
     let info = reader.info();
-    info.exif_metadata.as_deref().and_then(Orientation::from_exif_chunk).unwrap_or(Orientation::NoTransforms)
+    let Some(exif) = info.exif_metadata.as_deref() else { return (Orientation::NoTransforms, None) };
+    let turn = Orientation::from_exif_chunk(exif).unwrap_or(Orientation::NoTransforms);
+    (turn, Camera::of_raw_exif(exif, turn))
 }
 
 fn encoding(info: &Info<'_>, grey: bool, options: &ReadOptions, notes: &mut Vec<String>) -> Encoding {

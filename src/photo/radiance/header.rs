@@ -4,6 +4,7 @@ use std::io::{BufRead, Read as _, Write};
 
 use glam::DVec2;
 
+use super::super::camera::Camera;
 use super::super::{Photo, Primaries, Reason};
 
 /// Headers list the commands that made a picture; one longer than this is none.
@@ -23,6 +24,8 @@ pub struct Header {
     pub lost_primaries: bool,
     /// Height of a pixel over its width.
     aspect: f64,
+    /// The camera by VIEW.
+    camera: Option<Camera>,
     /// In which order the pixels stand.
     pub order: Order,
 }
@@ -54,6 +57,7 @@ impl Header {
             primaries: None,
             lost_primaries: false,
             aspect: 1.0,
+            camera: None,
             order,
         };
         let mut left = LONGEST;
@@ -112,6 +116,7 @@ impl Header {
             _ => {
                 match name {
                     "EXPOSURE" => numbers(1).into_iter().for_each(|n| multiply([n[0]; 3])),
+                    "VIEW" => self.camera = view(value),
                     "COLORCORR" => numbers(3).into_iter().for_each(|n| multiply([n[0], n[1], n[2]])),
                     _ => {}
                 }
@@ -128,10 +133,28 @@ impl Header {
         self.exposure
     }
 
+    /// The camera, where VIEW tells of one that looks straight at the picture.
+    pub fn camera(&self) -> Option<Camera> {
+        self.camera
+    }
+
     /// Width of a pixel over its height.
     pub fn pixel_aspect(&self) -> f64 {
         Some(self.aspect.recip()).filter(|aspect| aspect.is_normal()).unwrap_or(1.0)
     }
+}
+
+/// The field of a view in perspective, `-vtv`, which is the default, that looks at the picture's middle: rview(1).
+fn view(options: &str) -> Option<Camera> {
+    let words: Vec<&str> = options.split_whitespace().collect();
+    let number = |name: &str| {
+        let at = words.iter().rposition(|word| *word == name)?;
+        words.get(at + 1)?.parse::<f64>().ok()
+    };
+    let is_perspective = words.iter().rev().find_map(|word| word.strip_prefix("-vt")).is_none_or(|kind| kind == "v");
+    let is_straight = ["-vs", "-vl"].iter().all(|name| number(name).is_none_or(|shift| shift == 0.0));
+    let angles = [number("-vh"), number("-vv")];
+    if is_perspective && is_straight { Camera::of_angles(angles) } else { None }
 }
 
 impl Order {

@@ -61,6 +61,7 @@ pub(super) fn read(mut reader: impl BufRead + Seek, options: &ReadOptions) -> Re
         primaries: header.primaries.filter(|_| !header.xyz).and_then(Primaries::other_than_rec709),
         pixel_aspect: header.pixel_aspect(),
         space: xyz.map(|_| "CIE XYZ".to_owned()),
+        camera: header.camera(),
         radiance: Some(Arc::new(header)),
         ..Source::plain()
     };

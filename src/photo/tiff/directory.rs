@@ -36,6 +36,7 @@ pub(super) mod tag {
     pub const YCBCR_COEFFICIENTS: u16 = 529;
     pub const YCBCR_SUBSAMPLING: u16 = 530;
     pub const REFERENCE_BLACK_WHITE: u16 = 532;
+    pub const EXIF_IFD: u16 = 34665;
     pub const ICC_PROFILE: u16 = 34675;
     pub const DNG_VERSION: u16 = 50706;
 }

@@ -80,6 +80,11 @@ impl Meaning {
         Ok(Self { icc, palette, ycbcr, orientation, options, notes })
     }
 
+    /// How the picture is to be turned to be upright.
+    pub fn orientation(&self) -> Orientation {
+        self.orientation
+    }
+
     /// What grey or RGB samples mean: by the profile, else light where they are floats, and sRGB where they are integers.
     fn encoding(&mut self, layout: &Layout, grey: bool) -> Encoding {
         let is_float = layout.kind == Kind::Float;

@@ -30,12 +30,15 @@ mod samples;
 mod sgi_log;
 mod write;
 
+use std::collections::HashMap;
 use std::io::{Read, Seek};
 
 use self::compression::Compression;
-use self::directory::{File, tag};
+use self::directory::{Directory, File, tag};
 use self::layout::Layout;
 use self::light::Meaning;
+use super::camera::{self, Camera};
+use super::decode::is_quarter_turn;
 use super::{Photo, ReadOptions, Reason};
 
 pub(super) use write::write;
@@ -45,14 +48,28 @@ pub(super) fn read(reader: impl Read + Seek, options: &ReadOptions) -> Result<Ph
     let mut page = page::choose(&mut file)?;
     let layout = Layout::of(&mut file, &page.directory)?;
     let meaning = Meaning::of(&mut file, &page.directory, &layout, *options)?;
+    let camera = camera(&mut file, &page.directory);
     let tables = match layout.compression {
         Compression::Jpeg => file.raw(&page.directory, tag::JPEG_TABLES)?,
         _ => None,
     };
     let codes = pieces::read(&mut file, &layout, tables.as_deref())?;
+    let turn = meaning.orientation();
     let mut photo = light::into_photo(codes, &layout, meaning)?;
+    photo.source.camera = camera.map(|camera| if is_quarter_turn(turn) { camera.turned() } else { camera });
     photo.source.picture = page.name;
     page.notes.append(&mut photo.source.notes);
     photo.source.notes = page.notes;
     Ok(photo)
+}
+
+/// What Exif says of the camera; what is wrong with it does the picture no harm.
+fn camera<R: Read + Seek>(file: &mut File<R>, page: &Directory) -> Option<Camera> {
+    let at = file.number(page, tag::EXIF_IFD).ok().flatten()?;
+    let exif = file.directory(at).ok()?;
+    let mut values = HashMap::new();
+    for (tag, _) in camera::tag::NAMES {
+        values.extend(file.reals(&exif, tag, 1).ok().flatten().and_then(|reals| Some((tag, *reals.first()?))));
+    }
+    Camera::of_exif(|tag| values.get(&tag).copied())
 }
