@@ -70,6 +70,33 @@ pub enum Mix {
     Energy,
 }
 
+/// What a look's lengths are counted in: sizes, and positions from the picture's centre.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "terminal", derive(clap::ValueEnum))]
+#[serde(rename_all = "kebab-case")]
+pub enum LengthUnit {
+    /// Half the picture's height
+    #[default]
+    Height,
+    /// Half its shorter side, which stays the same when it is turned by 90°
+    ShortSide,
+    /// Half its diagonal, which does so, too
+    Diagonal,
+    /// Degrees, as they are in the picture's middle, by its field of view
+    Degrees,
+}
+
+impl std::fmt::Display for LengthUnit {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Height => "height",
+            Self::ShortSide => "short-side",
+            Self::Diagonal => "diagonal",
+            Self::Degrees => "degrees",
+        })
+    }
+}
+
 /// How a camera formed the picture: what angle lies between two pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "terminal", derive(clap::ValueEnum))]

@@ -26,7 +26,7 @@ layout(std140, binding = BINDING_DIRECT) uniform Direct {
     ivec2 corner;   // of the tile, in pixels of the picture
     ivec2 size;     // of the picture, in pixels
     uint ghost_count; // a multiple of STEP; the last ones of each kind may have no weight
-    vec2 unit;      // half a pixel's width and height: the pixels' aspect, and 1, over the picture's height
+    vec2 unit;      // half a pixel's width and height
     uvec4 aspect;   // of `direct_double`
     uvec4 runs[DIRECT_RUNS / 4]; // where the ghosts of each kind of bell begin, and where the last of them end
 };

@@ -8,19 +8,21 @@ use serde::Serialize;
 
 use super::found::{self, short};
 use crate::Result;
+use crate::choices::LengthUnit;
 use crate::frame::Frame;
-use crate::options::{FindArgs, ReadArgs};
+use crate::look::Look;
+use crate::options::{FindArgs, ReadArgs, UnitArgs};
 use crate::photo;
 use crate::scene::threshold::Rule;
-use crate::scene::{Emission, FindOptions, Found, Light, find};
+use crate::scene::{FindOptions, Found, Light};
 use crate::terminal::stderr::warn;
 use crate::terminal::stdout;
 
 /// Find the lights in a photo
 ///
 /// Prints each connected region of bright pixels as a light: where its centre is, what flux it has and how large it is.
-/// Positions and sizes are in half picture heights from the picture's centre, x to the right and y up; flux is radiance
-/// times area, in the photo's unit.
+/// Positions and sizes are in half picture heights, or in what --unit says, from the picture's centre, x to the right and y up;
+/// flux is radiance times area, in the photo's unit.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
@@ -36,6 +38,9 @@ pub struct Args {
 
     #[command(flatten)]
     find: FindArgs,
+
+    #[command(flatten)]
+    unit: UnitArgs,
 }
 
 const EXAMPLES: &str = "\
@@ -53,17 +58,21 @@ pub fn run(args: &Args) -> Result<()> {
     let photo = photo::read_with(&args.photo, &args.reading.options())?;
     warn(&photo.source.notes);
     let options = args.find.over(FindOptions::default());
-    let found = find(&photo.pixels, &photo.frame, Emission::of(&photo), &options);
+    let look = args.unit.over(Look { find: options, ..Look::default() });
+    args.unit.check(&look)?;
+    let frame = look.frame(&photo)?;
+    let found = look.find(&photo, &frame);
     if args.json {
-        stdout::json(|out| json(out, &found))
+        stdout::json(|out| json(out, &found, look.unit))
     } else {
-        stdout::print(|out| table(out, &found, &options, &photo.frame))
+        stdout::print(|out| table(out, &found, &options, &frame))
     }
 }
 
 /// Found lights as `scene::read_lights` reads them.
 #[derive(Serialize)]
 struct Json {
+    unit: LengthUnit,
     threshold: f64,
     rule: Rule,
     regions: usize,
@@ -100,8 +109,9 @@ impl From<&Light> for LightJson {
     }
 }
 
-fn json(out: &mut dyn Write, found: &Found) -> io::Result<()> {
+fn json(out: &mut dyn Write, found: &Found, unit: LengthUnit) -> io::Result<()> {
     let json = Json {
+        unit,
         threshold: found.threshold,
         rule: found.rule,
         regions: found.regions,
@@ -160,7 +170,7 @@ fn summary(found: &Found, options: &FindOptions) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::read_lights;
+    use crate::scene::{find, read_lights, read_lights_in};
 
     #[derive(clap::Parser)]
     struct Cli {
@@ -210,9 +220,12 @@ mod tests {
     fn the_json_is_read_back_bit_for_bit() {
         let (found, _) = found();
         let path = tempfile::NamedTempFile::new().unwrap().into_temp_path();
-        std::fs::write(&path, printed(|out| json(out, &found))).unwrap();
+        std::fs::write(&path, printed(|out| json(out, &found, LengthUnit::Diagonal))).unwrap();
         assert_eq!(found.lights.len(), 2);
         assert_eq!(read_lights(&path).unwrap(), found.lights);
+        assert_eq!(read_lights_in(&path, LengthUnit::Diagonal).unwrap(), found.lights);
+        let said = read_lights_in(&path, LengthUnit::Height).unwrap_err().to_string();
+        assert!(said.contains("`diagonal`") && said.contains("`height`"), "{said}");
     }
 
     #[test]

@@ -125,7 +125,7 @@ impl Evaluators {
     pub fn direct(&mut self, corner: [i32; 2], frame: Frame) -> Result<()> {
         let size = [frame.width as i32, frame.height as i32];
         let unit = (0.5 * frame.pixel_sides()).to_array().map(|half| half as f32);
-        let (count, aspect) = (self.runs[RUNS - 1], [frame.pixel_aspect, 0.0]);
+        let (count, aspect) = (self.runs[RUNS - 1], [frame.pixel_aspect, frame.unit]);
         self.direct.store(&[Direct { corner, size, count, pad: 0, unit, aspect, runs: self.runs }])?;
         self.direct.bind_uniform(DIRECT);
         if self.many {

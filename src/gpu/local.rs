@@ -89,7 +89,7 @@ pub(crate) struct LocalPass {
     doubles: Buffer<DoubleGhost>,
     lists: Buffer<u32>,
     shapes: Buffer<Words>,
-    tile: Buffer<[i32; 12]>,
+    tile: Buffer<[i32; 16]>,
     canvas: Scratch,
     /// The canvas of listed ghosts that are one layer of some: its head, then pixels of three doubles, two doubles an element.
     exact: Buffer<[f64; 2]>,
@@ -189,7 +189,8 @@ impl LocalPass {
                 canvas.clear(0.0);
                 let mut one = |bell: &str, ranges: &[Range<usize>], points: bool| {
                     let margin = if points { MARGIN } else { 0 };
-                    self.tile.store(&[[corner[0], corner[1], size[0], size[1], margin, 0, 0, 0, 0, 0, 0, 0]])?;
+                    let [[x, y], [wide, high]] = [corner, size];
+                    self.tile.store(&[[x, y, wide, high, margin, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]])?;
                     let how = How { points, margin, array: &self.array, bell };
                     add(runner, canvas, &self.ghosts, ranges, &how)
                 };
@@ -199,12 +200,16 @@ impl LocalPass {
                 }
             }
             &Scene::Listed { columns, blocks, shift, step, bands } => {
-                let (window, aspect) = (frame.window, frame.pixel_aspect.to_bits());
-                let [low, high] = [aspect as u32 as i32, (aspect >> 32) as i32];
+                let window = frame.window;
+                let words = |number: f64| [number.to_bits() as u32 as i32, (number.to_bits() >> 32) as i32];
+                let ([aspect, aspect_high], [unit, unit_high]) = (words(frame.pixel_aspect), words(frame.unit));
                 let [x, y] = corner;
                 let size = [frame.width as i32, frame.height as i32];
                 let [columns, blocks, shift, wide] = [columns, blocks, shift, width].map(|number| number as i32);
-                let words = [x, y, size[0], size[1], window.x, window.y, columns, blocks, shift, wide, low, high];
+                #[rustfmt::skip]
+                let words = [
+                    x, y, size[0], size[1], window.x, window.y, columns, blocks, shift, wide, aspect, aspect_high, unit, unit_high, 0, 0,
+                ];
                 self.tile.store(&[words])?;
                 self.doubles.bind_storage(GHOSTS);
                 self.lists.bind_storage(PARTIALS);

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::{Planning, Stages, Veiled};
 use crate::Result;
 use crate::certificate::Certificate;
+use crate::frame::Frame;
 use crate::gpu::{Info, PassTime};
 use crate::look::{Gathered, Look};
 use crate::photo::{BadPixels, Facts, Photo};
@@ -15,6 +16,8 @@ use crate::photo::{BadPixels, Facts, Photo};
 pub struct Done<'a> {
     /// What was laid over it.
     pub look: &'a Look,
+    /// The photo's frame, with lengths in the look's unit.
+    pub frame: Frame,
     /// What is told of the photo.
     pub facts: Facts,
     /// The photo's pixels that are no light.

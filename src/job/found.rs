@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::planned::stays_finite;
 use super::{Computer, Done, Planned, Stages, Step, Wanted, Watch, bright_light, plan, settings, veil};
 use crate::Result;
+use crate::frame::Frame;
 use crate::look::{Gathered, Look, Search};
 use crate::photo::{self, BadPixels, Facts, Photo};
 use crate::problem::Problem;
@@ -16,6 +17,8 @@ pub struct Found<'a> {
     pub look: &'a Look,
     /// Someone else may hold it, too; where no one does, the picture takes over its memory.
     pub photo: Arc<Photo>,
+    /// Its frame, with lengths in the look's unit.
+    pub frame: Frame,
     /// What is told of it.
     pub facts: Facts,
     /// Its pixels that are no light.
@@ -33,7 +36,7 @@ impl<'a> Found<'a> {
     /// Finds what glares in a photo.
     ///
     /// # Errors
-    /// Those of [`settings()`].
+    /// Those of [`Look::frame`] and [`settings()`].
     pub fn new(look: &'a Look, photo: impl Into<Arc<Photo>>, stages: Stages) -> Result<Self> {
         Self::knowing(look, photo, None, stages)
     }
@@ -41,7 +44,7 @@ impl<'a> Found<'a> {
     /// The same for a photo that may have been searched already: by the rules of this look it is not searched again.
     ///
     /// # Errors
-    /// Those of [`settings()`].
+    /// Those of [`Look::frame`] and [`settings()`].
     pub fn knowing(
         look: &'a Look,
         photo: impl Into<Arc<Photo>>,
@@ -49,12 +52,14 @@ impl<'a> Found<'a> {
         mut stages: Stages,
     ) -> Result<Self> {
         let photo = photo.into();
+        let frame = look.frame(&photo)?;
         let bad = stages.time("survey", || photo::survey(&photo));
-        let scene = stages.time("lights", || look.gather_knowing(&photo, search));
+        let scene = stages.time("lights", || look.gather_knowing(&photo, &frame, search));
         let mut warnings = photo.source.notes.clone();
-        let (settings, warning) = settings(look, &photo, &scene, |threshold| bright_light(&photo, threshold))?;
+        let bright = |threshold| bright_light(&photo, &frame, threshold);
+        let (settings, warning) = settings(look, &photo, &scene, bright)?;
         warnings.extend(warning);
-        Ok(Self { look, facts: photo.facts(), photo, bad, scene, stages, warnings, settings })
+        Ok(Self { look, facts: photo.facts(), photo, frame, bad, scene, stages, warnings, settings })
     }
 
     /// Lays the glare over the photo. A look of strength 0 has none and needs no computer; without a computer there is
@@ -75,7 +80,7 @@ impl<'a> Found<'a> {
     /// Where there is no plan, or its glare is beyond what 32-bit floats hold; [`crate::Error::Cancelled`].
     pub fn plan(mut self, computer: &mut Computer, watch: &impl Watch) -> Result<Planned<'a>> {
         watch.begin(Step::Planning)?;
-        let problem = Problem::new(self.scene.ghosts.clone(), self.photo.frame);
+        let problem = Problem::new(self.scene.ghosts.clone(), self.frame);
         let (accuracy, known) = (&self.look.accuracy, computer.known.clone());
         let planning = self.stages.time("plan", || plan(accuracy, &problem, Some(&computer.info), known))?;
         computer.known.warning = None;
@@ -87,10 +92,10 @@ impl<'a> Found<'a> {
 
     /// The photo with its veil, where it has one, or as it is, and black glare.
     fn without_ghosts(self, wanted: Wanted, watch: &impl Watch) -> Result<Done<'a>> {
-        let Self { look, photo, facts, bad, scene, mut stages, mut warnings, settings: _ } = self;
+        let Self { look, photo, frame, facts, bad, scene, mut stages, mut warnings, settings: _ } = self;
         let before = if bad.nan + bad.infinite > 0 { photo::not_finite(&photo.pixels) } else { 0 };
         watch.begin(Step::Computing)?;
-        let cast = veil::cast(look, &photo, wanted.verify, &mut stages)?;
+        let cast = veil::cast(look, &photo, &frame, wanted.verify, &mut stages)?;
         let dark = || photo.companion(vec![[0.0, 0.0, 0.0, 1.0]; photo.frame.window.pixels()]);
         let mut glare = wanted.glare.then(dark);
         if let (Some(cast), Some(glare)) = (&cast, &mut glare) {
@@ -104,6 +109,6 @@ impl<'a> Found<'a> {
         stays_finite(picture.as_ref(), before, glare.as_ref(), 0)?;
         let veiled = cast.map(|cast| cast.veiled);
         warnings.extend(veiled.as_ref().and_then(|veiled| Some(veiled.error.check().err()?.to_string())));
-        Ok(Done { look, facts, bad, scene, picture, glare, computed: None, veiled, stages, warnings })
+        Ok(Done { look, frame, facts, bad, scene, picture, glare, computed: None, veiled, stages, warnings })
     }
 }

@@ -36,13 +36,13 @@ impl<'a> Planned<'a> {
     /// Where the driver refuses; [`Error::NotFinite`]; [`Error::Cancelled`].
     pub fn render(self, computer: &mut Computer, wanted: Wanted, watch: &impl Watch) -> Result<Done<'a>> {
         let Self { found, planning, info } = self;
-        let Found { look, photo, facts, bad, scene, mut stages, mut warnings, settings } = found;
+        let Found { look, photo, frame, facts, bad, scene, mut stages, mut warnings, settings } = found;
         // What is not finite in the photo already is no fault of the glare's.
         let before = if bad.nan + bad.infinite > 0 { photo::not_finite(&photo.pixels) } else { 0 };
         watch.begin(Step::Computing)?;
         let renderer = computer.renderer()?;
         renderer.field.set_timing(wanted.times);
-        let cast = veil::cast(look, &photo, wanted.verify, &mut stages)?;
+        let cast = veil::cast(look, &photo, &frame, wanted.verify, &mut stages)?;
         // Of the photo as it is: the picture takes over its memory.
         let change = cast.as_ref().map(|cast| cast.change(&photo.pixels));
         let drawn = draw(renderer, photo, &planning.plan, &settings, wanted, &mut stages);
@@ -70,7 +70,7 @@ impl<'a> Planned<'a> {
         let computed = Some(Computed { info, planning, certificate, passes, measured_ms });
         let veiled = cast.map(|cast| cast.veiled);
         warnings.extend(veiled.as_ref().and_then(|veiled| Some(veiled.error.check().err()?.to_string())));
-        Ok(Done { look, facts, bad, scene, picture, glare, computed, veiled, stages, warnings })
+        Ok(Done { look, frame, facts, bad, scene, picture, glare, computed, veiled, stages, warnings })
     }
 }
 
@@ -83,7 +83,7 @@ fn draw(
     wanted: Wanted,
     stages: &mut Stages,
 ) -> Result<Drawn> {
-    let frame = photo.frame;
+    let frame = plan.problem().frame();
     stages.time("spectrum", || renderer.field.set_scene(plan))?;
     // What the plan has computed of the spectrum is the spectrum's.
     let computed = plan.spectrum_milliseconds();

@@ -1,6 +1,7 @@
 //! What the composite is told of a look.
 
 use crate::choices::{Mix, Normalize};
+use crate::frame::Frame;
 use crate::look::{Gathered, Look};
 use crate::photo::Photo;
 use crate::renderer::Settings;
@@ -22,7 +23,7 @@ pub fn settings(
     #[rustfmt::skip]
     let &Look {
         strength, mix, normalize,
-        description: _, lens: _, axis: _, size: _, tint: _, lights: _, ghosts: _, find: _, veil: _, accuracy: _,
+        description: _, lens: _, unit: _, fov: _, axis: _, size: _, tint: _, lights: _, ghosts: _, find: _, veil: _, accuracy: _,
     } = look;
     let mut settings = Settings { strength, normalize, emission: Emission::of(photo), ..Settings::default() };
     if mix == Mix::Add {
@@ -41,11 +42,11 @@ pub fn settings(
     Ok((settings, warning))
 }
 
-/// The flux of all pixels of a photo at or above a luminance, RGB, in the photo's unit times half picture heights
-/// squared: what they give, a negative channel none. Fireflies count here as what they are.
-pub fn bright_light(photo: &Photo, threshold: f64) -> [f64; 3] {
+/// The flux of all pixels of a photo at or above a luminance, RGB, in the photo's unit times the frame's unit of
+/// lengths squared: what they give, a negative channel none. Fireflies count here as what they are.
+pub fn bright_light(photo: &Photo, frame: &Frame, threshold: f64) -> [f64; 3] {
     let emission = Emission::of(photo);
-    let (area, threshold) = (photo.frame.pixel_size().powi(2), threshold as f32);
+    let (area, threshold) = (frame.pixel_size().powi(2), threshold as f32);
     let mut bright = [0.0; 3];
     for pixel in &photo.pixels {
         if is_light(emission.luminance(pixel), threshold) {
@@ -91,13 +92,13 @@ mod tests {
             size: DVec2::ONE,
             radiance: [flux / std::f64::consts::TAU, 0.0, 0.0],
         };
-        let (gain, enough) = light_gain(bright_light(&photo, 10.0), &[ghost(2.5)], 2.0);
+        let (gain, enough) = light_gain(bright_light(&photo, &photo.frame, 10.0), &[ghost(2.5)], 2.0);
         assert!((gain[0] - 0.8).abs() < 1e-12 && gain[1..] == [1.0, 1.0] && enough, "{gain:?}");
-        let (gain, enough) = light_gain(bright_light(&photo, 10.0), &[ghost(50.0)], 1.0);
+        let (gain, enough) = light_gain(bright_light(&photo, &photo.frame, 10.0), &[ghost(50.0)], 1.0);
         assert_eq!((gain, enough), ([0.0, 1.0, 1.0], false));
-        let (gain, enough) = light_gain(bright_light(&photo, f64::INFINITY), &[ghost(1.0)], 1.0);
+        let (gain, enough) = light_gain(bright_light(&photo, &photo.frame, f64::INFINITY), &[ghost(1.0)], 1.0);
         assert_eq!((gain, enough), ([0.0, 1.0, 1.0], false));
-        assert_eq!(light_gain(bright_light(&photo, 10.0), &[], 1.0), ([1.0; 3], true));
+        assert_eq!(light_gain(bright_light(&photo, &photo.frame, 10.0), &[], 1.0), ([1.0; 3], true));
     }
 
     #[test]
@@ -105,12 +106,12 @@ mod tests {
         let mut photo = Photo::new(5, 1, [0.0, 0.25, 0.5, 1.0, f32::NAN].map(|alpha| [8.0, 4.0, -2.0, alpha]).to_vec());
         // A pixel's area is 2 × 2.
         let whole = [32.0, 16.0, 0.0];
-        assert_eq!(bright_light(&photo, 1.0), whole.map(|light: f64| 5.0 * light));
+        assert_eq!(bright_light(&photo, &photo.frame, 1.0), whole.map(|light: f64| 5.0 * light));
         photo.source.alpha = Alpha::Straight;
-        assert_eq!(bright_light(&photo, 1.0), whole.map(|light: f64| 1.75 * light));
-        assert_eq!(bright_light(&photo, 2.0), whole.map(|light: f64| 1.5 * light));
+        assert_eq!(bright_light(&photo, &photo.frame, 1.0), whole.map(|light: f64| 1.75 * light));
+        assert_eq!(bright_light(&photo, &photo.frame, 2.0), whole.map(|light: f64| 1.5 * light));
         photo.source.primaries = Some(Primaries::ACES2065_1);
         photo.pixels.fill([0.0, 0.0, 9.0, 1.0]);
-        assert_eq!(bright_light(&photo, 0.0), [0.0; 3]);
+        assert_eq!(bright_light(&photo, &photo.frame, 0.0), [0.0; 3]);
     }
 }

@@ -1,9 +1,9 @@
 //! Looks as scene files, and back.
 
 use super::{Accuracy, Look, LookLens, LookLights, Shared, Veil};
-use crate::choices::Mix;
+use crate::choices::{LengthUnit, Mix};
 use crate::scene::presets::DEFAULT_PRESET;
-use crate::scene::{AccuracySection, FindOptions, FindSection, LookSection, SceneFile};
+use crate::scene::{AccuracySection, FindOptions, FindSection, LookSection, SceneFile, VeilSection};
 use crate::{Error, Result};
 
 impl Look {
@@ -27,13 +27,21 @@ impl Look {
             None if scene.lens_ghosts.is_empty() => LookLens::preset(DEFAULT_PRESET)?,
             None => LookLens::Own(scene.lens_ghosts.into()),
         };
-        let LookSection { strength, size, tint, mix, normalize } = scene.look;
+        let LookSection { strength, size, tint, mix, normalize, unit, fov } = scene.look;
         let AccuracySection { goal, allow_floor, evaluator } = scene.accuracy;
+        let of_veil = scene.veil.as_ref().and_then(|veil| veil.fov);
+        if let (Some(one), Some(other)) = (fov, of_veil)
+            && one != other
+        {
+            return Err(Error::Usage(format!("the scene says that the picture spans {one}° and {other}°")));
+        }
         let veil = scene.veil.map(|veil| Veil::new(&veil, mix == Some(Mix::Add))).transpose();
         let veil = veil.map_err(|fault| Error::Usage(format!("the scene's veil: {fault}")))?;
         Ok(Self {
             description: scene.description,
             lens,
+            unit: unit.unwrap_or_default(),
+            fov: fov.or(of_veil),
             axis: scene.axis.unwrap_or_default(),
             size: size.unwrap_or(1.0),
             tint: tint.unwrap_or([1.0; 3]),
@@ -59,7 +67,7 @@ impl Look {
     pub fn to_scene(&self) -> SceneFile {
         #[rustfmt::skip]
         let Self {
-            description, lens, axis, size, tint, lights, ghosts, find, strength, veil, mix, normalize, accuracy,
+            description, lens, unit, fov, axis, size, tint, lights, ghosts, find, strength, veil, mix, normalize, accuracy,
         } = self;
         let (preset, lens_ghosts) = match lens {
             LookLens::Preset(lens) => (Some(lens.name.clone()), Vec::new()),
@@ -86,6 +94,9 @@ impl Look {
                 // To say of a veil that it is added is to say more than nothing.
                 mix: veil.as_ref().is_none_or(|veil| veil.adds || *mix != Mix::Add).then_some(*mix),
                 normalize: Some(*normalize),
+                // As in files from before there were others.
+                unit: (*unit != LengthUnit::default()).then_some(*unit),
+                fov: if veil.is_some() { None } else { *fov },
             },
             find: FindSection {
                 threshold,
@@ -95,7 +106,7 @@ impl Look {
                 add,
             },
             accuracy: AccuracySection { goal: Some(goal), allow_floor, evaluator },
-            veil: veil.as_ref().map(Veil::section),
+            veil: veil.as_ref().map(|veil| VeilSection { fov: *fov, ..veil.section() }),
             lights: listed,
             ghosts: ghosts.to_vec(),
             lens_ghosts,
@@ -110,7 +121,7 @@ mod tests {
     use super::*;
     use crate::choices::{Evaluator, Normalize};
     use crate::psf::{Name, Parameters};
-    use crate::scene::{Ghost, Goal, Lens, Light, VeilSection, presets, read_scene, write_scene};
+    use crate::scene::{Ghost, Goal, Lens, Light, presets, read_scene, write_scene};
     use crate::series::Bell;
 
     fn through_a_file(look: &Look) -> Look {
@@ -129,6 +140,8 @@ mod tests {
         let full = Look {
             description: "all of it".into(),
             lens: LookLens::Own(table.into()),
+            unit: LengthUnit::Diagonal,
+            fov: Some(40.5),
             axis: DVec2::new(0.1, 0.2),
             size: 0.7,
             tint: [1.0, 0.3, 0.0],
@@ -153,12 +166,15 @@ mod tests {
         let added = Look { lights: LookLights::FoundAnd(vec![light].into()), ..Look::default() };
         let section = VeilSection {
             parameters: Parameters { age: Some(60.0), ..Parameters::new(Name::Cie) },
-            fov: Some(50.0),
+            fov: None,
             projection: None,
             border: None,
             tolerance: Some(0.02),
         };
-        let veiled = |adds| Look { veil: Some(Veil::new(&section, adds).unwrap()), ..Look::default() };
+        let veiled = |adds| {
+            let veil = Some(Veil::new(&section, adds).unwrap());
+            Look { veil, fov: Some(50.0), unit: LengthUnit::Degrees, ..Look::default() }
+        };
         for look in [Look::default(), full.clone(), none, ghost_and_photo, added, veiled(false), veiled(true)] {
             assert_eq!(through_a_file(&look), look);
         }

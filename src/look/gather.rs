@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::{Look, LookLights};
 use crate::choices::Mix;
+use crate::frame::Frame;
 use crate::photo::Photo;
 use crate::scene::{self, Emission, FindOptions, Found, Ghost, Lens, Light};
 
@@ -24,21 +25,24 @@ pub struct Gathered {
 pub struct Search {
     /// The rules.
     pub options: FindOptions,
+    /// The unit of lengths, in half picture heights.
+    pub unit: f64,
     /// What there is by them.
     pub found: Found,
 }
 
 impl Look {
-    /// What glares in a photo. It is searched for lights where none are listed, and for the threshold where light is
-    /// taken from it.
-    pub fn gather(&self, photo: &Photo) -> Gathered {
-        self.gather_knowing(photo, None)
+    /// What glares in a photo, on its frame as [`Look::frame`] gives it. It is searched for lights where none are listed, and
+    /// for the threshold where light is taken from it.
+    pub fn gather(&self, photo: &Photo, frame: &Frame) -> Gathered {
+        self.gather_knowing(photo, frame, None)
     }
 
     /// The same for a photo that may have been searched already; by other rules than the look's it is searched again.
-    pub fn gather_knowing(&self, photo: &Photo, search: Option<Search>) -> Gathered {
-        let known = search.filter(|search| search.options == self.find).map(|search| search.found);
-        self.gather_from(self.searches().then(|| known.unwrap_or_else(|| self.find(photo))))
+    pub fn gather_knowing(&self, photo: &Photo, frame: &Frame, search: Option<Search>) -> Gathered {
+        let fits = |search: &Search| search.options == self.find && search.unit == frame.unit;
+        let known = search.filter(fits).map(|search| search.found);
+        self.gather_from(self.searches().then(|| known.unwrap_or_else(|| self.find(photo, frame))))
     }
 
     /// What glares in a photo of which `found` is known.
@@ -63,9 +67,9 @@ impl Look {
         self.strength != 0.0 && !(self.lens.ghosts().is_empty() && self.ghosts.is_empty())
     }
 
-    /// Searches a photo for lights.
-    pub fn find(&self, photo: &Photo) -> Found {
-        scene::find(&photo.pixels, &photo.frame, Emission::of(photo), &self.find)
+    /// Searches a photo for lights, on its frame as [`Look::frame`] gives it.
+    pub fn find(&self, photo: &Photo, frame: &Frame) -> Found {
+        scene::find(&photo.pixels, frame, Emission::of(photo), &self.find)
     }
 
     /// The ghosts that the lens makes of `lights`, then those that no light makes, in the look's size and tint.

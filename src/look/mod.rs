@@ -3,6 +3,7 @@
 mod file;
 mod gather;
 mod shared;
+mod unit;
 mod veil;
 
 use std::borrow::Cow;
@@ -12,7 +13,7 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use crate::Result;
-use crate::choices::{Evaluator, Mix, Normalize};
+use crate::choices::{Evaluator, LengthUnit, Mix, Normalize};
 use crate::scene::presets::{self, DEFAULT_PRESET};
 use crate::scene::{FindOptions, Ghost, Goal, Lens, LensGhost, Light};
 
@@ -28,6 +29,10 @@ pub struct Look {
     pub description: String,
     /// What the lights are seen through.
     pub lens: LookLens,
+    /// What lengths are counted in: sizes, and positions from the picture's centre.
+    pub unit: LengthUnit,
+    /// What the picture's width spans, in degrees, where somebody said so; else what its file says counts.
+    pub fov: Option<f64>,
     /// Where the lens's axis meets the picture.
     pub axis: DVec2,
     /// What every ghost's size is multiplied by, > 0; its flux stays.
@@ -83,7 +88,7 @@ pub struct Accuracy {
     pub allow_floor: bool,
     /// Highest harmonic in x and y, 0 to 4096.
     pub degree: Option<[u32; 2]>,
-    /// Period of the series in x and y, > 0, in half picture heights.
+    /// Period of the series in x and y, > 0, in the unit of lengths.
     pub period: Option<DVec2>,
     /// How the field is computed.
     pub evaluator: Option<Evaluator>,
@@ -95,6 +100,8 @@ impl Default for Look {
         Self {
             description: String::new(),
             lens: LookLens::preset(DEFAULT_PRESET).expect("the default preset is compiled in"),
+            unit: LengthUnit::default(),
+            fov: None,
             axis: DVec2::ZERO,
             size: 1.0,
             tint: [1.0; 3],

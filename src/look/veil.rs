@@ -2,8 +2,9 @@
 
 use crate::choices::{Border, Projection};
 use crate::frame::Frame;
+use crate::photo::View;
 use crate::psf::{self, Parameters, Psf, Unit};
-use crate::scene::{VeilFunction, VeilSection, check_fov};
+use crate::scene::{VeilFunction, VeilSection};
 use crate::veil::Geometry;
 
 /// What every pixel of a photo scatters over all others.
@@ -11,7 +12,6 @@ use crate::veil::Geometry;
 pub struct Veil {
     parameters: Parameters,
     function: VeilFunction,
-    fov: Option<f64>,
     projection: Option<Projection>,
     /// What lies beyond the picture's edges.
     pub border: Border,
@@ -25,17 +25,15 @@ impl Veil {
     /// What a veil is held to where nobody says: no eye sees a hundredth of a veil.
     pub const TOLERANCE: f64 = 1e-2;
 
-    /// What a section of a scene file says, or options do.
+    /// What a section of a scene file says, or options do, but for its field of view, which is the look's.
     ///
     /// # Errors
-    /// A [`psf::Fault`], which names the key: of a function that cannot be had, and a field of view that is none.
+    /// A [`psf::Fault`], which names the key: of a function that cannot be had.
     pub fn new(section: &VeilSection, adds: bool) -> Result<Self, psf::Fault> {
-        let VeilSection { parameters, fov, projection, border, tolerance } = section;
-        fov.map_or(Ok(()), |fov| check_fov(fov, *projection))?;
+        let VeilSection { parameters, fov: _, projection, border, tolerance } = section;
         Ok(Self {
             function: VeilFunction::new(parameters)?,
             parameters: parameters.clone(),
-            fov: *fov,
             projection: *projection,
             border: border.unwrap_or_default(),
             tolerance: *tolerance,
@@ -49,10 +47,10 @@ impl Veil {
         Self { adds, ..self }
     }
 
-    /// The section of a scene file that says the same.
+    /// The section of a scene file that says the same, without a field of view.
     pub fn section(&self) -> VeilSection {
-        let &Self { ref parameters, function: _, fov, projection, border, tolerance, adds: _ } = self;
-        VeilSection { parameters: parameters.clone(), fov, projection, border: Some(border), tolerance }
+        let &Self { ref parameters, function: _, projection, border, tolerance, adds: _ } = self;
+        VeilSection { parameters: parameters.clone(), fov: None, projection, border: Some(border), tolerance }
     }
 
     /// What it is held to, relative to the veil at each pixel: [`Veil::TOLERANCE`] unless somebody said otherwise.
@@ -70,9 +68,9 @@ impl Veil {
         self.function.psf()
     }
 
-    /// The field of view that was given, in degrees across the picture's width.
-    pub fn fov(&self) -> Option<f64> {
-        self.fov
+    /// Whether the function's angles are degrees, so that it matters what the picture spans.
+    pub fn is_in_degrees(&self) -> bool {
+        self.psf().unit() == Unit::Degrees
     }
 
     /// How the picture was formed: as it was said, or rectilinear for a function in degrees and a plane for any other.
@@ -84,12 +82,13 @@ impl Veil {
         self.projection.unwrap_or(by_default)
     }
 
-    /// Where the pixels of a picture lie for this function.
+    /// Where the pixels of a picture lie for this function, whose lengths are in the frame's unit; `view` says how the picture was
+    /// seen, for one in degrees.
     ///
     /// # Errors
-    /// A [`psf::Fault`]: where the function is in degrees and nothing says what the picture spans, where it is not and the
-    /// picture is to be a sphere, and for pixels that are not square.
-    pub fn geometry(&self, frame: &Frame) -> Result<Geometry, psf::Fault> {
+    /// A [`psf::Fault`]: where the function is in degrees and there is no view, where it is not and the picture is to be a
+    /// sphere, and for pixels that are not square.
+    pub fn geometry(&self, frame: &Frame, view: Option<&View>) -> Result<Geometry, psf::Fault> {
         let fault = |key, reason: String| Err(psf::Fault::new(key, reason));
         if frame.pixel_aspect != 1.0 {
             return fault("psf", "a veil needs square pixels, and this picture has none".into());
@@ -105,38 +104,30 @@ impl Veil {
             },
             Unit::Pixels => fault("psf", format!("{name} is no radial function, and vglare computes radial ones")),
             Unit::Degrees => {
-                let Some(fov) = self.fov else {
+                let Some(&View { focal, .. }) = view else {
                     return fault(
                         "fov",
-                        format!(
-                            "{name} is in degrees, and nothing says how many of them the picture spans: give a field of view, \
-                             as 50 for a standard lens"
-                        ),
+                        format!("{name} is in degrees, and nothing says how many of them the picture spans"),
                     );
                 };
-                check_fov(fov, Some(projection))?;
                 if projection != Projection::Planar && self.border != Border::None {
                     return fault(
                         "border",
                         "nothing is known of the sphere beyond a picture: only a plane has a border".into(),
                     );
                 }
-                let width = frame.width as usize;
                 // A window that lies elsewhere than in the middle of its picture would be seen from elsewhere.
-                if projection != Projection::Planar && *frame != Frame::full(frame.width, frame.height) {
+                if projection != Projection::Planar && !frame.is_whole() {
                     return fault(
                         "projection",
                         "a picture of which another part is stored than all has a planar veil only".into(),
                     );
                 }
                 Ok(match projection {
-                    Projection::Rectilinear => Geometry::rectilinear(fov, width),
-                    Projection::Fisheye => Geometry::fisheye(fov, width),
+                    Projection::Rectilinear => Geometry::Rectilinear { focal },
+                    Projection::Fisheye => Geometry::Fisheye { focal },
                     // As it is in the middle.
-                    Projection::Planar => {
-                        let focal = 0.5 * width as f64 / (0.5 * fov).to_radians().tan();
-                        Geometry::planar_degrees((1.0 / focal).to_degrees())
-                    }
+                    Projection::Planar => Geometry::planar_degrees((1.0 / focal).to_degrees()),
                 })
             }
         }

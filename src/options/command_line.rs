@@ -49,13 +49,15 @@ fn options(look: &Look) -> Result<Vec<String>> {
     // All fields by name: one that is added does not compile until it is an option, or said by a file.
     #[rustfmt::skip]
     let Look {
-        description: _, lens, axis, size, tint, lights: _, ghosts: _, find, strength, veil: _, mix, normalize, accuracy,
+        description: _, lens, unit, fov, axis, size, tint, lights: _, ghosts: _, find, strength, veil: _, mix, normalize, accuracy,
     } = look;
     match lens {
         LookLens::File(path, _) => options.add("--lens", word(path)?),
         LookLens::Preset(preset) if *lens != default.lens => options.add("--preset", &preset.name),
         LookLens::Preset(_) | LookLens::Own(_) => {}
     }
+    options.changed("--unit", *unit, default.unit, name);
+    options.given("--fov", *fov, |fov| fov.to_string());
     options.changed("--axis", *axis, default.axis, pair);
     let FindOptions { threshold, merge, max_lights, firefly_limit } = *find;
     options.given("--threshold", threshold, |x| x.to_string());

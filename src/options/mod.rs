@@ -8,6 +8,7 @@ pub(crate) mod numbers;
 pub(crate) mod psf;
 mod reading;
 mod scene;
+mod unit;
 mod veil;
 
 pub use accuracy::{AccuracyArgs, CalibrationArgs};
@@ -17,4 +18,5 @@ pub use find::FindArgs;
 pub use psf::PsfArgs;
 pub use reading::ReadArgs;
 pub use scene::SceneArgs;
+pub use unit::UnitArgs;
 pub use veil::VeilArgs;

@@ -9,6 +9,7 @@ use glam::DVec2;
 
 use crate::Result;
 use crate::look::{Look, LookLens, LookLights};
+use crate::options::UnitArgs;
 use crate::options::numbers::point;
 use crate::scene;
 use crate::scene::presets::NO_LENS;
@@ -42,6 +43,10 @@ pub struct SceneArgs {
     /// [default: 0,0]
     #[arg(long, value_name = "X,Y", value_parser = point, allow_hyphen_values = true)]
     axis: Option<DVec2>,
+
+    /// What lengths and angles are counted in.
+    #[command(flatten)]
+    pub unit: UnitArgs,
 }
 
 impl SceneArgs {
@@ -60,6 +65,7 @@ impl SceneArgs {
             Some(path) => Look::from_scene(scene::read_scene(path)?)?,
             None => Look::default(),
         };
+        look = self.unit.over(look);
         if let Some(path) = &self.lens
             && path.as_os_str() == NO_LENS
         {
@@ -70,10 +76,10 @@ impl SceneArgs {
             look.lens = LookLens::preset(name)?;
         }
         if let Some(path) = &self.lights {
-            look.lights = LookLights::Listed(scene::read_lights(path)?.into());
+            look.lights = LookLights::Listed(scene::read_lights_in(path, look.unit)?.into());
         }
         if let Some(path) = &self.add_lights {
-            look.add_lights(scene::read_lights(path)?);
+            look.add_lights(scene::read_lights_in(path, look.unit)?);
         }
         look.axis = self.axis.unwrap_or(look.axis);
         Ok(look)

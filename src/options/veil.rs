@@ -8,7 +8,6 @@ use clap::builder::PossibleValue;
 use crate::choices::{Border, Projection};
 use crate::look::{Look, Veil};
 use crate::options::PsfArgs;
-use crate::options::numbers::finite;
 use crate::options::psf::told;
 use crate::psf::{Name, Parameters};
 use crate::scene::VeilSection;
@@ -24,10 +23,6 @@ pub struct VeilArgs {
 
     #[command(flatten)]
     psf: PsfArgs,
-
-    /// The field of view across the picture's width, in degrees, for functions in degrees: 0.1 to 179
-    #[arg(long, value_name = "DEGREES", value_parser = finite)]
-    fov: Option<f64>,
 
     /// How the camera formed the picture [default: rectilinear for functions in degrees, planar for others]
     #[arg(long, value_enum)]
@@ -91,7 +86,7 @@ impl VeilArgs {
             }
             (None, before) => before,
         };
-        let Some(VeilSection { parameters, fov, projection, border, tolerance: before }) = section else {
+        let Some(VeilSection { parameters, fov: _, projection, border, tolerance: before }) = section else {
             if self.says_nothing() {
                 return Ok(look);
             }
@@ -101,7 +96,7 @@ impl VeilArgs {
         };
         let section = VeilSection {
             parameters: self.psf.over(parameters),
-            fov: self.fov.or(fov),
+            fov: None,
             projection: self.projection.or(projection),
             border: self.border.or(border),
             tolerance: tolerance.or(before),
@@ -115,7 +110,7 @@ impl VeilArgs {
     }
 
     fn says_nothing(&self) -> bool {
-        let Self { veil: _, psf, fov, projection, border } = self;
-        psf.is_empty() && fov.is_none() && projection.is_none() && border.is_none()
+        let Self { veil: _, psf, projection, border } = self;
+        psf.is_empty() && projection.is_none() && border.is_none()
     }
 }

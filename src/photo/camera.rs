@@ -10,6 +10,7 @@ use image::metadata::Orientation;
 
 use super::Photo;
 use super::decode::is_quarter_turn;
+use crate::choices::Projection;
 use crate::frame::Frame;
 
 /// The diagonal of 36 × 24 mm, in millimetres.
@@ -26,15 +27,30 @@ const ROUNDING: f64 = 1.5;
 pub struct View {
     /// The focal length, in heights of a pixel: so far in front of the picture it is seen as the camera saw it.
     pub focal: f64,
+    /// What the picture's width spans, in degrees, where that is what was said.
+    said: Option<f64>,
     /// What that follows from, in words.
     pub from: String,
 }
 
 impl View {
-    /// What the width of a rectilinear picture spans, in degrees.
-    pub fn across(&self, frame: &Frame) -> f64 {
+    /// That of a picture whose width spans so many degrees, as the camera formed it.
+    pub fn of_field(degrees: f64, frame: &Frame, projection: Projection) -> Self {
         let width = frame.pixel_aspect * f64::from(frame.width);
-        2.0 * (0.5 * width / self.focal).atan().to_degrees()
+        let focal = match projection {
+            Projection::Fisheye => width / degrees.to_radians(),
+            Projection::Rectilinear | Projection::Planar => 0.5 * width / (0.5 * degrees).to_radians().tan(),
+        };
+        Self { focal, said: Some(degrees), from: "as given".to_owned() }
+    }
+
+    /// What the width of the picture spans, in degrees, as the camera formed it; that of a plane as of a rectilinear one.
+    pub fn across(&self, frame: &Frame, projection: Projection) -> f64 {
+        let width = frame.pixel_aspect * f64::from(frame.width);
+        self.said.unwrap_or_else(|| match projection {
+            Projection::Fisheye => (width / self.focal).to_degrees(),
+            Projection::Rectilinear | Projection::Planar => 2.0 * (0.5 * width / self.focal).atan().to_degrees(),
+        })
     }
 }
 
@@ -183,8 +199,8 @@ impl Camera {
                 (focal * pixels * scale, format!("focal length {focal} mm, {pixels:.1} pixels to a mm of the sensor"))
             }
         };
-        let view = View { focal, from };
-        Ok((FIELDS[0]..=FIELDS[1]).contains(&view.across(frame)).then_some(view))
+        let view = View { focal, said: None, from };
+        Ok((FIELDS[0]..=FIELDS[1]).contains(&view.across(frame, Projection::Rectilinear)).then_some(view))
     }
 
     /// The columns and rows of the picture that the camera made, as it lies now, and what one of its pixels is in this one's.
@@ -236,7 +252,7 @@ mod tests {
 
     fn across(camera: Camera, width: u32, height: u32) -> f64 {
         let frame = Frame::full(width, height);
-        camera.view(&frame).unwrap().unwrap().across(&frame)
+        camera.view(&frame).unwrap().unwrap().across(&frame, Projection::Rectilinear)
     }
 
     /// 2 atan(w / 2f) by hand: 36 mm and 28 mm, 24 mm and 28 mm, and a square whose diagonal is that of 36 × 24 mm.

@@ -13,6 +13,8 @@
 //! tint = [1.0, 1.0, 1.0]      # what the ghosts' colours are multiplied by; 0 or more
 //! mix = "add"                 # or "energy"
 //! normalize = "none"          # or "clamp", "minmax"
+//! unit = "height"             # of lengths; or "short-side", "diagonal", "degrees"
+//! fov = 50                    # degrees across the picture's width, for what is in degrees
 //!
 //! [find]                      # lights in the photo, where the file lists none or adds to them
 //! threshold = 20.0
@@ -51,7 +53,7 @@
 //! share = 0.01                # of the light's flux; 0 or more
 //! ```
 //!
-//! Lengths are in half picture heights, the origin is the picture's centre, y points up. A lens file has `description`
+//! Lengths are in half picture heights unless `unit` in `[look]` says otherwise, the origin is the picture's centre, y points up. A lens file has `description`
 //! and `[[lens_ghost]]` only, a light file `[[light]]` only; a light file may also be what `vglare lights --json` prints.
 
 use std::fs;
@@ -69,6 +71,7 @@ use super::sections::{AccuracySection, AccuracyTable, FindSection, LookSection};
 use super::tables::{LensTable, LightsJson, LightsTable, SceneTable};
 use super::veil::{self, VeilSection};
 use super::{Ghost, LensGhost, Light};
+use crate::choices::LengthUnit;
 use crate::{Error, Result};
 
 /// What a scene file says. Everything is optional in the file.
@@ -141,15 +144,38 @@ pub(super) fn parse_scene(path: &Path, text: &str) -> Result<SceneFile> {
 ///
 /// Like [`read_scene`].
 pub fn read_lights(path: &Path) -> Result<Vec<Light>> {
+    lights(path).map(|(lights, _)| lights)
+}
+
+/// The same for a look whose lengths are counted in `unit`.
+///
+/// # Errors
+///
+/// Like [`read_lights`]; also for a file that says that its lights are in another unit.
+pub fn read_lights_in(path: &Path, unit: LengthUnit) -> Result<Vec<Light>> {
+    let (lights, theirs) = lights(path)?;
+    match theirs.filter(|theirs| *theirs != unit) {
+        Some(theirs) => Err(Error::scene_file(
+            path,
+            format_args!(
+                "its lights are in the unit `{theirs}`, and the look is in `{unit}`: give both the same --unit"
+            ),
+        )),
+        None => Ok(lights),
+    }
+}
+
+/// The lights of a file, and their unit where it says that.
+fn lights(path: &Path) -> Result<(Vec<Light>, Option<LengthUnit>)> {
     let text = text(path)?;
     // No TOML document begins with a brace, and all that we print as JSON does.
     if text.trim_start_matches('\u{feff}').trim_start().starts_with('{') {
-        let lights: LightsJson = serde_json::from_str(text.trim_start_matches('\u{feff}'))
+        let json: LightsJson = serde_json::from_str(text.trim_start_matches('\u{feff}'))
             .map_err(|e| Error::scene_file(path, json_reason(&text, &e)))?;
-        return Ok(converted(lights.lights));
+        return Ok((converted(json.lights), json.unit));
     }
     let table: LightsTable = from_toml(path, &text)?;
-    Ok(converted(table.lights))
+    Ok((converted(table.lights), None))
 }
 
 /// Reads a lens file. The lens is called like the file, without the extension.

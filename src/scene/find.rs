@@ -73,6 +73,15 @@ impl Found {
     pub fn merged(&self) -> usize {
         self.regions - self.lights.len() - self.dropped
     }
+
+    /// Counts lengths in another unit, of which there are `factor` in the one before.
+    pub(crate) fn rescale(&mut self, factor: f64) {
+        for light in &mut self.lights {
+            light.position *= factor;
+            light.size *= factor;
+            light.flux = light.flux.map(|flux| flux * factor * factor);
+        }
+    }
 }
 
 /// Finds the lights among the stored pixels of a photo, brightest first.

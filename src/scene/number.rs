@@ -31,6 +31,7 @@ pub(super) struct IsNotNegative;
 pub(super) struct IsPositive;
 pub(super) struct IsFraction;
 pub(super) struct IsFactor;
+pub(super) struct IsField;
 
 impl Allowed for IsFinite {
     const EXPECTED: &'static str = "a finite number";
@@ -64,6 +65,13 @@ impl Allowed for IsFactor {
     const EXPECTED: &'static str = "0, or a finite number of at least 1";
     fn holds(x: f64) -> bool {
         x == 0.0 || (IsFinite::holds(x) && x >= 1.0)
+    }
+}
+
+impl Allowed for IsField {
+    const EXPECTED: &'static str = "a field of view from 0.1 to 360 degrees";
+    fn holds(x: f64) -> bool {
+        (0.1..=360.0).contains(&x)
     }
 }
 

@@ -5,8 +5,8 @@ use toml::Spanned;
 
 use super::FindOptions;
 use super::bells::Fault;
-use super::number::{Allowed, IsFactor, IsFraction, IsNotNegative, IsPositive, NotNegative, Number, plain};
-use crate::choices::{Evaluator, Mix, Normalize};
+use super::number::{Allowed, IsFactor, IsField, IsFraction, IsNotNegative, IsPositive, NotNegative, Number, plain};
+use crate::choices::{Evaluator, LengthUnit, Mix, Normalize};
 
 /// `[look]`; what is `None` is left to the command line and its defaults.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -27,6 +27,12 @@ pub struct LookSection {
     /// How the field's values become glare.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub normalize: Option<Normalize>,
+    /// What lengths are counted in.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unit: Option<LengthUnit>,
+    /// What the picture's width spans, in degrees.
+    #[serde(default, deserialize_with = "number::<_, IsField>", skip_serializing_if = "Option::is_none")]
+    pub fov: Option<f64>,
 }
 
 /// `[find]`; see [`super::FindOptions`].

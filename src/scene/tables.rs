@@ -9,6 +9,7 @@ use super::number::{Degree, Finite, NotNegative, Number, Positive, Sizes, plain}
 use super::presets;
 use super::sections::{AccuracyTable, FindSection, LookSection};
 use super::{Ghost, LensGhost, Light};
+use crate::choices::LengthUnit;
 
 /// A scene file; also a file of lights alone.
 #[derive(Deserialize)]
@@ -56,9 +57,10 @@ pub(super) struct LightsTable {
     pub lights: Vec<LightTable>,
 }
 
-/// What `vglare lights --json` prints. What it says besides the lights is not read, and may be missing or wrong.
+/// What `vglare lights --json` prints. What it says besides the lights and their unit is not read, and may be missing or wrong.
 #[derive(Deserialize)]
 pub(super) struct LightsJson {
+    pub unit: Option<LengthUnit>,
     pub lights: Vec<LightTable>,
 }
 

@@ -26,10 +26,10 @@ use super::timings::Timings;
 use super::{panels, viewing};
 use crate::gpu::paint::Painter;
 use crate::gpu::{Device, Screen};
+use crate::look::Search;
 use crate::photo::ReadOptions;
 use crate::plan::Plan;
 use crate::printable::printable;
-use crate::scene::{FindOptions, Found};
 use crate::{Result, panics};
 
 use files::Files;
@@ -53,7 +53,7 @@ pub struct App {
     loader: Loader,
     wake: Wake,
     look: Look,
-    search: Option<Search>,
+    search: Option<Searching>,
     files: Files,
     budget: Budget,
     documents: Vec<(u64, Document)>,
@@ -69,10 +69,9 @@ pub struct App {
 }
 
 /// A search for lights: of which document, by which rules.
-struct Search {
+struct Searching {
     document: u64,
-    options: FindOptions,
-    task: Task<Found>,
+    task: Task<Search>,
 }
 
 /// What came of a frame.
@@ -287,14 +286,14 @@ impl App {
             }
         }
         self.take_in_files();
-        if let Some(Search { document, options, task }) = self.search.take() {
+        if let Some(Searching { document, task }) = self.search.take() {
             match task.poll() {
-                State::Running => self.search = Some(Search { document, options, task }),
+                State::Running => self.search = Some(Searching { document, task }),
                 State::Failed(error) => self.notice(format!("the search for lights failed: {error}")),
                 State::Done(found) => {
                     let searched = self.documents.iter_mut().find(|(number, _)| *number == document);
                     if let Some((_, document)) = searched {
-                        document.set_found(options, found);
+                        document.set_found(found);
                     }
                 }
             }
@@ -312,12 +311,11 @@ impl App {
             self.moved = self.context.time();
         }
         if self.search.is_none() && document.wants_search() && !document.is_asleep() {
-            let (look, photo) = (document.look.clone(), document.photo.clone());
-            let task = Task::start("search", &self.wake, move || look.find(&photo));
+            let (look, photo, frame) = (document.look.clone(), document.photo.clone(), document.whole_frame());
+            let search = move || Search { options: look.find, unit: frame.unit, found: look.find(&photo, &frame) };
+            let task = Task::start("search", &self.wake, search);
             match task {
-                Ok(task) => {
-                    self.search = Some(Search { document: *number, options: document.look.find, task });
-                }
+                Ok(task) => self.search = Some(Searching { document: *number, task }),
                 Err(error) => self.notice(format!("the photo cannot be searched: {error}")),
             }
         }

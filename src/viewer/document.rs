@@ -11,6 +11,7 @@ use super::model::{History, Look, LookLens};
 use super::viewing::Viewing;
 use crate::Result;
 use crate::frame::{Frame, Window};
+use crate::look::Search;
 use crate::photo::{self, Photo, ReadOptions};
 use crate::printable;
 use crate::scene::{FindOptions, Found, Ghost, Light};
@@ -27,7 +28,7 @@ pub struct Document {
     pub path: PathBuf,
     /// The whole of it, as it was read.
     pub photo: Arc<Photo>,
-    /// The frame of the pixels that are shown.
+    /// The frame of the pixels that are shown, with lengths in the look's unit, as far as that can be had.
     pub frame: Frame,
     /// The side of the square of the file's pixels whose mean is one that is shown.
     pub shrunk: u32,
@@ -39,6 +40,9 @@ pub struct Document {
     pub found: Found,
     /// The rules that it was found by.
     pub searched: FindOptions,
+    /// The unit of lengths that it was searched in, in half picture heights, and that of what was found.
+    pub searched_in: f64,
+    found_in: f64,
     /// What is set; a change becomes a step of the history by [`Document::record`].
     pub look: Look,
     history: History,
@@ -78,6 +82,7 @@ impl Document {
     /// An open photo.
     pub fn new(path: &Path, photo: Photo, look: Look) -> Self {
         let shrunk = side(photo.frame.window, LIVE_PIXELS);
+        let whole = look.frame(&photo).unwrap_or(photo.frame);
         let (frame, means) = match shrunk {
             1 => (photo.frame, None),
             side => shrink(&photo, side),
@@ -85,10 +90,12 @@ impl Document {
         Self {
             path: path.to_owned(),
             gamut: photo.to_rec709(),
-            found: look.find(&photo),
+            found: look.find(&photo, &whole),
             searched: look.find,
+            searched_in: whole.unit,
+            found_in: whole.unit,
             photo: Arc::new(photo),
-            frame,
+            frame: frame.in_units_of(whole.unit),
             shrunk,
             means,
             history: History::new(look.clone()),
@@ -132,7 +139,7 @@ impl Document {
     pub(super) fn wake(&mut self, fresh: Self) {
         (self.photo, self.means, self.frame, self.shrunk) = (fresh.photo, fresh.means, fresh.frame, fresh.shrunk);
         self.gamut = fresh.gamut;
-        self.set_found(fresh.searched, fresh.found);
+        self.set_found(Search { options: fresh.searched, unit: fresh.searched_in, found: fresh.found });
     }
 
     /// The lights, found or listed, muted ones too.
@@ -183,17 +190,41 @@ impl Document {
 
     /// Whether the photo has to be searched anew.
     pub fn wants_search(&self) -> bool {
-        self.look.searches() && self.look.find != self.searched
+        self.look.searches() && (self.look.find != self.searched || self.frame.unit != self.searched_in)
     }
 
     /// Takes over what a search found.
-    pub fn set_found(&mut self, searched: FindOptions, found: Found) {
-        (self.searched, self.found) = (searched, found);
+    pub fn set_found(&mut self, search: Search) {
+        let Search { options, unit, found } = search;
+        (self.searched, self.searched_in, self.found_in, self.found) = (options, unit, unit, found);
+        self.fit_unit();
         self.drop_selection();
+    }
+
+    /// What a search found, and by which rules.
+    pub fn search(&self) -> Search {
+        Search { options: self.searched, unit: self.searched_in, found: self.found.clone() }
+    }
+
+    /// The frame of the whole photo, with lengths in the look's unit.
+    pub fn whole_frame(&self) -> Frame {
+        self.photo.frame.in_units_of(self.frame.unit)
+    }
+
+    /// Counts lengths in the unit of a look that has changed, those of lights, too, until they have been searched for anew. A
+    /// unit that cannot be had changes nothing here; the stage says why.
+    fn fit_unit(&mut self) {
+        let unit = self.look.frame(&self.photo).map_or(self.frame.unit, |frame| frame.unit);
+        self.frame = self.frame.in_units_of(unit);
+        if self.found_in != unit {
+            self.found.rescale(self.found_in / unit);
+            self.found_in = unit;
+        }
     }
 
     /// Makes what has changed since a step of the history. While a gesture goes on, its changes are one step.
     pub fn record(&mut self, gesture: bool) {
+        self.fit_unit();
         if gesture && self.look != *self.history.look() {
             self.history.begin();
         }
@@ -208,6 +239,7 @@ impl Document {
     /// Sets another look altogether.
     pub fn set_look(&mut self, look: Look) {
         self.look = look;
+        self.fit_unit();
         self.drop_selection();
     }
 
@@ -216,6 +248,7 @@ impl Document {
         self.record(false);
         self.history.undo();
         self.look.clone_from(self.history.look());
+        self.fit_unit();
         self.drop_selection();
     }
 
@@ -224,6 +257,7 @@ impl Document {
         self.record(false);
         self.history.redo();
         self.look.clone_from(self.history.look());
+        self.fit_unit();
         self.drop_selection();
     }
 

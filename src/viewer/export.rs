@@ -68,7 +68,7 @@ impl Export {
         let step = Mutex::new(STEPS[0]);
         let progress = Arc::new(Progress { step, cancelled: AtomicBool::new(false), wake: wake.clone() });
         let (photo, look) = (document.photo.clone(), document.look.clone());
-        let search = Search { options: document.searched, found: document.found.clone() };
+        let search = document.search();
         let (target, watch) = (path.to_owned(), progress.clone());
         let work = move || write(photo, &look, search, subject, &target, &watch);
         let task = Task::start("export", wake, work).map_err(|reason| Error::write(path, reason))?;
@@ -158,7 +158,7 @@ mod tests {
         let mut known = document.found.clone();
         known.lights[0].flux = [7.0; 3];
         let lights = |options: FindOptions| {
-            let search = Search { options, found: known.clone() };
+            let search = Search { options, unit: 1.0, found: known.clone() };
             Found::knowing(&look, document.photo.clone(), Some(search), Stages::default()).unwrap().scene.lights
         };
         assert_eq!(lights(document.searched), known.lights, "it is not searched again");

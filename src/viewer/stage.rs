@@ -61,8 +61,8 @@ struct Made {
     look: Option<Look>,
     frame: Option<Frame>,
     picture: Option<(Settings, Shows)>,
-    /// The light of the photo's bright pixels, for a threshold.
-    bright: Option<(f64, [f64; 3])>,
+    /// The light of the photo's bright pixels, for a threshold and a unit of lengths.
+    bright: Option<((f64, f64), [f64; 3])>,
     /// The constant term of the spectrum that is there, once it was asked for.
     constant: Option<[f64; 3]>,
     /// Whether that picture was drawn; a view can often do without.
@@ -154,14 +154,16 @@ impl Stage {
             // Until all of it is done, what is there is of no look.
             self.made.look = None;
         }
+        // A unit that cannot be had is told before anything is made in another.
+        let whole = look.frame(&document.photo)?;
         if work >= Work::Ghosts {
             self.made.scene = Some(look.gather_from(Some(document.found.clone())));
         }
         let Some(scene) = &self.made.scene else { return Ok(()) };
         let bright = &mut self.made.bright;
         let (mut settings, _) = job::settings(look, &document.photo, scene, |threshold| match *bright {
-            Some((known, light)) if known == threshold => light,
-            _ => bright.insert((threshold, job::bright_light(&document.photo, threshold))).1,
+            Some((known, light)) if known == (threshold, whole.unit) => light,
+            _ => bright.insert(((threshold, whole.unit), job::bright_light(&document.photo, &whole, threshold))).1,
         })?;
         if work >= Work::Plan {
             // Pixels are not looked at one by one while they move.

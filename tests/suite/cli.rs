@@ -19,6 +19,7 @@ mod targets;
 mod terminal;
 mod tradeoff;
 mod unchanged;
+mod units;
 mod veil;
 mod view;
 

@@ -193,7 +193,7 @@ fn the_cross_section_is_the_field_and_the_truth_along_the_line() {
         session.wait(|app| app.study().section().is_some_and(|points| points.len() == wanted));
         let plan = session.app.plan().unwrap().clone();
         let document = session.app.document().unwrap();
-        let ghosts = document.look.gather(&document.photo).ghosts;
+        let ghosts = document.look.gather(&document.photo, &document.frame).ghosts;
         for (k, point) in session.app.study().section().unwrap().iter().enumerate() {
             let k = k as i32;
             assert_eq!(point.pixel, if horizontal { [k, fixed] } else { [fixed, k] });

@@ -120,6 +120,7 @@ impl Args {
     pub fn look(&self) -> Result<Look> {
         let look = self.look.over(self.veil.over(self.scene.look()?, self.accuracy.tolerance())?);
         let (find, accuracy) = (self.find.over(look.find), self.accuracy.over(look.accuracy));
+        self.scene.unit.check(&look)?;
         Ok(Look { find, accuracy, ..look })
     }
 }

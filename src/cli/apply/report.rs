@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::job::Job;
 use crate::certificate::Certificate;
-use crate::choices::{Mix, Normalize};
+use crate::choices::{LengthUnit, Mix, Normalize};
 use crate::cli::lights::FirefliesJson;
 use crate::cli::plan::CostModelReport;
 use crate::gpu::{Info, PassTime};
@@ -23,6 +23,7 @@ pub struct Report<'a> {
     output: Option<String>,
     glare: Option<String>,
     scene: SceneReport<'a>,
+    unit: UnitReport,
     strength: f64,
     size: f64,
     tint: [f64; 3],
@@ -51,6 +52,13 @@ struct PhotoReport {
     /// Width of a pixel over its height.
     pixel_aspect: f64,
     bad_pixels: BadReport,
+}
+
+/// What lengths are counted in, and what that is in heights of a pixel.
+#[derive(Serialize)]
+struct UnitReport {
+    name: LengthUnit,
+    pixels: f64,
 }
 
 /// What spectrum and field were expected to take, and what they took together with the composite. A driver may compile
@@ -113,6 +121,8 @@ impl<'a> Report<'a> {
         let &Look {
             description: _,
             lens: _,
+            unit,
+            fov: _,
             axis,
             size,
             tint,
@@ -132,6 +142,7 @@ impl<'a> Report<'a> {
             output: paths.output.as_ref().map(|path| path.display().to_string()),
             glare: paths.glare.as_ref().map(|path| path.display().to_string()),
             scene: scene_report(&work.scene, axis),
+            unit: UnitReport { name: unit, pixels: work.frame.pixel_size().recip() },
             strength,
             size,
             tint,

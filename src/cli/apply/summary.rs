@@ -6,6 +6,7 @@ use super::job::Job;
 use super::report::kind_name;
 use crate::Result;
 use crate::certificate::Verify;
+use crate::choices::LengthUnit;
 use crate::cli::found;
 use crate::cli::plan::text;
 use crate::job::{Computed, Done, Veiled};
@@ -22,6 +23,7 @@ pub fn print(job: &Job<'_, Done<'_>>) -> Result<()> {
     }
     stdout::print(|out| {
         about_photo(out, job)?;
+        about_unit(out, &job.work)?;
         about_scene(out, &job.work.scene, job.work.look)?;
         if let Some(veiled) = &job.work.veiled {
             about_veil(out, veiled)?;
@@ -66,6 +68,16 @@ fn about_photo(out: &mut dyn Write, job: &Job<'_, Done<'_>>) -> io::Result<()> {
         )?;
     }
     Ok(())
+}
+
+/// What lengths are counted in, where that is not as by default.
+fn about_unit(out: &mut dyn Write, work: &Done<'_>) -> io::Result<()> {
+    let (unit, pixels) = (work.look.unit, work.frame.pixel_size().recip());
+    match unit {
+        LengthUnit::Height => Ok(()),
+        LengthUnit::Degrees => writeln!(out, "unit     degrees, of {pixels:.1} pixels in the middle of the picture"),
+        _ => writeln!(out, "unit     half the picture's {}, {pixels:.1} pixels", unit.to_string().replace('-', " ")),
+    }
 }
 
 /// What is light, and what it becomes.
@@ -113,10 +125,10 @@ fn about_found(out: &mut dyn Write, found: &Found, look: &Look) -> io::Result<()
 
 /// What every pixel scattered, how exactly, and what became of the light.
 fn about_veil(out: &mut dyn Write, veiled: &Veiled) -> io::Result<()> {
-    let Veiled { parameters, projection, fov, strength, scattered, terms, error, ledger, dark, .. } = veiled;
+    let Veiled { parameters, projection, fov, fov_from, strength, scattered, terms, error, ledger, dark, .. } = veiled;
     write!(out, "veil     {}", parameters.psf)?;
-    if let Some(fov) = fov {
-        write!(out, ", {fov}° across a {} picture", said(projection))?;
+    if let Some((fov, from)) = fov.zip(fov_from.as_ref()) {
+        write!(out, ", {from}: {}° across a {} picture", angle(fov), said(projection))?;
     }
     let mean = |values: [f64; 3]| values.into_iter().sum::<f64>() / 3.0;
     writeln!(out, ": scatters {:.1} % of the light, by {terms} Gaussians", 100.0 * strength * mean(*scattered))?;
@@ -137,6 +149,16 @@ fn about_veil(out: &mut dyn Write, veiled: &Veiled) -> io::Result<()> {
         "error    of the veil, by its own brightness at each pixel: {:.1e} measured at {} pixels, {:.1e} predicted, {:.1e} asked",
         error.measured, error.pixels, error.predicted, error.asked
     )
+}
+
+/// An angle to a thousandth of a degree where it is one of these, else to a tenth.
+fn angle(degrees: f64) -> String {
+    let near = (1e3 * degrees).round() * 1e-3;
+    if (near - degrees).abs() < 1e-9 * degrees {
+        format!("{}", (1e3 * near).round() / 1e3)
+    } else {
+        format!("{degrees:.1}")
+    }
 }
 
 /// A choice as it is written.

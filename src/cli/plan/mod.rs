@@ -79,8 +79,9 @@ pub fn run(args: &Args) -> Result<()> {
     look.accuracy = args.accuracy.over(look.accuracy);
     let photo = photo::read_with(&args.photo, &args.reading.options())?;
     warn(&photo.source.notes);
-    let scene = look.gather(&photo);
-    let frame = args.size.map_or(photo.frame, |[width, height]| photo.frame.resized(width, height));
+    let whole = look.frame(&photo)?;
+    let scene = look.gather(&photo, &whole);
+    let frame = args.size.map_or(whole, |[width, height]| whole.resized(width, height));
     let device = Device::open(args.accuracy.backend.backends()).ok();
     let info = device.as_ref().map(|device| device.info());
     let planned =

@@ -194,5 +194,5 @@ fn shaders_read_the_uniforms_of_the_direct_sum_as_they_are_written() {
     let block = ("BINDING_DIRECT", DIRECT);
     let of = |aspect: Given| [&begin[..], &[aspect, ("runs", runs.clone())]].concat();
     held(&["evaluators/direct.glsl"], block, value, &of(("aspect", 8..=11)));
-    held(&["evaluators/direct_double.glsl"], block, value, &of(("aspect", 8..=9)));
+    held(&["evaluators/direct_double.glsl"], block, value, &of(("aspect", 8..=11)));
 }

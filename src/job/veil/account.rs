@@ -18,8 +18,10 @@ pub struct Veiled {
     pub parameters: Parameters,
     /// How the picture was taken to be formed, degrees across its width, and what lies beyond it.
     pub projection: Projection,
-    /// See `projection`.
+    /// See `projection`; none where the function is not in degrees.
     pub fov: Option<f64>,
+    /// What that follows from, in words.
+    pub fov_from: Option<String>,
     /// See `projection`.
     pub border: Border,
     /// s: what the veil was multiplied by.

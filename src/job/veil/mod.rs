@@ -9,8 +9,9 @@ use rayon::prelude::*;
 use super::Stages;
 use crate::certificate::Verify;
 use crate::choices::Normalize;
+use crate::frame::Frame;
 use crate::look::{Look, Veil as Wanted};
-use crate::photo::{Alpha, Photo};
+use crate::photo::{Alpha, Photo, View};
 use crate::psf::Fault;
 use crate::scene::Emission;
 use crate::veil::{self, Kernel, Plan, Predicted};
@@ -36,10 +37,17 @@ pub(super) struct Cast {
 /// # Errors
 /// [`Error::Usage`] where the look contradicts itself or the photo, [`Error::ToleranceBelowFloor`] where the veil cannot be had to
 /// the tolerance.
-pub(super) fn cast(look: &Look, photo: &Photo, verify: Verify, stages: &mut Stages) -> Result<Option<Cast>> {
+pub(super) fn cast(
+    look: &Look,
+    photo: &Photo,
+    frame: &Frame,
+    verify: Verify,
+    stages: &mut Stages,
+) -> Result<Option<Cast>> {
     let Some(wanted) = look.veil.as_ref().filter(|_| look.strength != 0.0) else { return Ok(None) };
     check(look, wanted)?;
-    let geometry = wanted.geometry(&photo.frame).map_err(told)?;
+    let view = seen(look, wanted, photo)?;
+    let geometry = wanted.geometry(frame, view.as_ref()).map_err(told)?;
     let asked = wanted.tolerance();
     let size = [photo.width() as usize, photo.height() as usize];
     let (channels, asked) = stages.time("veil plan", || {
@@ -64,7 +72,8 @@ pub(super) fn cast(look: &Look, photo: &Photo, verify: Verify, stages: &mut Stag
     let veiled = Veiled {
         parameters: wanted.section().parameters,
         projection: wanted.projection(),
-        fov: wanted.fov(),
+        fov: view.as_ref().map(|view| view.across(frame, wanted.projection())),
+        fov_from: view.map(|view| view.from),
         border: wanted.border,
         strength,
         scattered: wanted.psf().energies(),
@@ -77,6 +86,12 @@ pub(super) fn cast(look: &Look, photo: &Photo, verify: Verify, stages: &mut Stag
         no_sources: no_sources(bad),
     };
     Ok(Some(Cast { planes, loses, veiled }))
+}
+
+/// How the photo was seen, for a veil in degrees.
+fn seen(look: &Look, veil: &Wanted, photo: &Photo) -> Result<Option<View>> {
+    let why = || format!("{} is in degrees", veil.psf().name());
+    veil.is_in_degrees().then(|| look.view(photo, &why())).transpose()
 }
 
 fn raised(tolerance: f64, asked: f64) -> String {

@@ -1,7 +1,11 @@
 //! How a veil is computed: the mixture of Gaussians, and the plan of each channel.
 
 use super::{failed, told};
+#[cfg(feature = "laboratory")]
+use crate::frame::Frame;
 use crate::look::Veil as Wanted;
+#[cfg(feature = "laboratory")]
+use crate::photo::View;
 use crate::psf::{Psf, TOLERANCES};
 use crate::veil::{Gaussian, Geometry, Kernel, Mixture, Plan};
 use crate::{Error, Result};
@@ -47,8 +51,8 @@ fn channels(veil: &Wanted, geometry: &Geometry, size: [usize; 2], tolerance: f64
 /// # Errors
 /// Those of a look with this veil.
 #[cfg(feature = "laboratory")]
-pub(crate) fn plan_of(veil: &Wanted, frame: &crate::frame::Frame, tolerance: f64) -> Result<Plan> {
-    let geometry = veil.geometry(frame).map_err(told)?;
+pub(crate) fn plan_of(veil: &Wanted, frame: &Frame, view: Option<&View>, tolerance: f64) -> Result<Plan> {
+    let geometry = veil.geometry(frame, view).map_err(told)?;
     let size = [frame.width as usize, frame.height as usize];
     let mut channels = channels(veil, &geometry, size, tolerance)?;
     Ok(channels.swap_remove(0).0)

@@ -10,6 +10,7 @@ use crate::choices::Projection;
 use crate::job::plan_of;
 use crate::look::Veil;
 use crate::measure::{Samples, interleave};
+use crate::photo::View;
 use crate::plan::Evaluator;
 use crate::psf::{Name, Parameters};
 use crate::scene::VeilSection;
@@ -66,7 +67,8 @@ pub(super) fn against_a_copy(stage: &Stage, report: &mut Report) -> Result<()> {
     let mut widths: Vec<Samples> = Vec::new();
     for Case { what, section, tolerance, most } in cases(f64::from(frame.width) / f64::from(frame.height)) {
         let veil = Veil::new(&section, false).map_err(|fault| Error::Plan(fault.to_string()))?;
-        let plan = plan_of(&veil, &frame, tolerance)?;
+        let view = section.fov.map(|fov| View::of_field(fov, &frame, veil.projection()));
+        let plan = plan_of(&veil, &frame, view.as_ref(), tolerance)?;
         let mut evaluate = || evaluated(&plan, &sources);
         let [copy, took] = interleave(stage.rounds, [&mut || actor.copy(), &mut evaluate] as [Arm<'_>; 2])?;
         let ratio = took.over(&copy);

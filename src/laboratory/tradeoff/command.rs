@@ -83,10 +83,11 @@ pub fn run(args: &Args) -> Result<()> {
     let mut look = args.scene.look()?;
     look.find = args.find.over(look.find);
     progress.say("reading the photo");
-    let photo = photo::read_with(&args.photo, &args.reading.options())?;
+    let mut photo = photo::read_with(&args.photo, &args.reading.options())?;
     warn(&photo.source.notes);
     progress.say("finding the lights");
-    let scene = look.gather(&photo);
+    photo.frame = look.frame(&photo)?;
+    let scene = look.gather(&photo, &photo.frame);
     let name = name(&args.photo);
     let subject = Subject::new(&name, &photo, &scene.ghosts)?;
     tradeoff::check(&args.output, args.force)?;

@@ -181,5 +181,5 @@ pub fn measure(
 
 /// The picture's width in half its heights.
 fn wide(study: &Study<'_>) -> f64 {
-    2.0 * f64::from(study.photo.width()) / f64::from(study.photo.height())
+    2.0 * study.photo.frame.half_width()
 }

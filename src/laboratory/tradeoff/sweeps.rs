@@ -222,10 +222,10 @@ fn certified(
 /// Gaussians of σ 0.15 to 0.45 anywhere in the picture.
 fn scattered(count: usize, frame: Frame) -> Vec<Ghost> {
     let mut chance = Chance::new(SEED);
-    let aspect = frame.half_width();
+    let (across, down) = (frame.half_width(), frame.half_height());
     let ghost = |_| Ghost {
         bell: Bell::Gaussian,
-        center: DVec2::new(chance.between(-aspect, aspect), chance.between(-1.0, 1.0)),
+        center: DVec2::new(chance.between(-across, across), chance.between(-down, down)),
         size: DVec2::splat(chance.between(0.15, 0.45)),
         radiance: [1.0; 3].map(|_: f64| chance.between(0.1, 1.0)),
     };

@@ -95,7 +95,7 @@ fn is_unchanged(photo: &Photo, rest: &Rest) -> Result<bool, Reason> {
 
 /// The picture and its window must be those that the header describes; how wide its pixels are shown is another attribute.
 fn check_window(photo: &Photo, header: &Header) -> Result<(), Reason> {
-    if (Frame { pixel_aspect: photo.frame.pixel_aspect, ..frame(header)? }) != photo.frame {
+    if (Frame { pixel_aspect: photo.frame.pixel_aspect, unit: photo.frame.unit, ..frame(header)? }) != photo.frame {
         return Err("the photo's window is not that of the file it came from".into());
     }
     Ok(())

@@ -1,5 +1,5 @@
 use super::*;
-use crate::choices::{Evaluator, Mix, Normalize};
+use crate::choices::{Evaluator, LengthUnit, Mix, Normalize};
 use crate::scene::Goal;
 use crate::series::Bell;
 
@@ -378,7 +378,7 @@ fn a_look_is_read_key_by_key() {
     let (_folder, path) = file(
         "look.toml",
         "preset = \"zoom\"\naxis = [0.1, -2]\nlight = []\n[look]\nstrength = 0\nsize = 2\ntint = [1, 0, 2.5]\n\
-         mix = \"energy\"\nnormalize = \"minmax\"\n[find]\nthreshold = 20\nmerge = 0\nmax_lights = 3\n\
+         mix = \"energy\"\nnormalize = \"minmax\"\nunit = \"short-side\"\nfov = 40\n[find]\nthreshold = 20\nmerge = 0\nmax_lights = 3\n\
          firefly_limit = 0\nadd = true\n\
          [accuracy]\nbudget = 20\nallow_floor = true\nevaluator = \"rows\"\n",
     );
@@ -391,6 +391,8 @@ fn a_look_is_read_key_by_key() {
         tint: Some([1.0, 0.0, 2.5]),
         mix: Some(Mix::Energy),
         normalize: Some(Normalize::Minmax),
+        unit: Some(LengthUnit::ShortSide),
+        fov: Some(40.0),
     };
     assert_eq!(scene.look, look);
     let find = FindSection {

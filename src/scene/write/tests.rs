@@ -1,7 +1,7 @@
 use super::*;
 use crate::chance::Chance;
 use crate::choices::{Border, Projection};
-use crate::choices::{Mix, Normalize};
+use crate::choices::{LengthUnit, Mix, Normalize};
 use crate::psf::{Name, Parameters};
 use crate::scene::{AccuracySection, read_scene};
 use crate::series::{Disc, SineGaussian, VonMises};
@@ -89,6 +89,11 @@ fn scene(chance: &mut Chance) -> SceneFile {
             tint: maybe(chance, rgb),
             mix: one_of(chance, &[None, Some(Mix::Add), Some(Mix::Energy)]),
             normalize: one_of(chance, &[None, Some(Normalize::None), Some(Normalize::Clamp), Some(Normalize::Minmax)]),
+            unit: one_of(
+                chance,
+                &[None, Some(LengthUnit::Height), Some(LengthUnit::ShortSide), Some(LengthUnit::Degrees)],
+            ),
+            fov: maybe(chance, |chance| chance.between(0.1, 179.0)),
         },
         find: FindSection {
             threshold: maybe(chance, positive),

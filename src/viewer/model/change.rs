@@ -1,6 +1,7 @@
 //! What has to be done again after a change.
 
 use super::{Look, LookLights};
+use crate::choices::LengthUnit;
 
 /// The first of the steps that have to be done again; all that follow it have to be as well.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -22,8 +23,13 @@ pub fn work(old: &Look, new: &Look) -> Work {
     // All fields by name: one that is added does not compile until it has a step.
     #[rustfmt::skip]
     let Look {
-        description: _, lens, axis, size, tint, lights, ghosts, find, strength, veil, mix, normalize, accuracy,
+        description: _, lens, unit, fov, axis, size, tint, lights, ghosts, find, strength, veil, mix, normalize, accuracy,
     } = new;
+    // All that is known of the photo is in the unit.
+    let degrees = |look: &Look| (look.fov, look.projection());
+    if old.unit != *unit || (*unit == LengthUnit::Degrees && degrees(old) != degrees(new)) {
+        return Work::Lights;
+    }
     // A search that found lights for `old` is the same for `new`, unless it goes by other rules.
     if new.searches() && !(old.searches() && old.find == *find) {
         return Work::Lights;
@@ -40,7 +46,7 @@ pub fn work(old: &Look, new: &Look) -> Work {
     if old.accuracy != *accuracy {
         return Work::Plan;
     }
-    if (old.strength, &old.veil, old.mix, old.normalize) == (*strength, veil, *mix, *normalize) {
+    if (old.strength, &old.veil, old.fov, old.mix, old.normalize) == (*strength, veil, *fov, *mix, *normalize) {
         Work::Nothing
     } else {
         Work::Composite
@@ -84,6 +90,10 @@ mod tests {
         let ghost = Ghost { bell: Bell::Gaussian, center: DVec2::ZERO, size: DVec2::ONE, radiance: [1.0; 3] };
         assert_eq!(changed(&look, |look| look.ghosts.push(ghost)), Work::Ghosts);
         assert_eq!(after(|look| look.find = FindOptions { merge: 0.5, ..look.find }), Work::Lights);
+        assert_eq!(after(|look| look.unit = LengthUnit::ShortSide), Work::Lights);
+        assert_eq!(after(|look| look.fov = Some(40.0)), Work::Composite);
+        let degrees = Look { unit: LengthUnit::Degrees, ..Look::default() };
+        assert_eq!(changed(&degrees, |look| look.fov = Some(40.0)), Work::Lights);
     }
 
     #[test]
