@@ -26,7 +26,7 @@ layout(std140, binding = BINDING_PASS) uniform Pass {
     int shift;    // of a block's side, a power of two
     int width;    // of the tile
     double aspect; // a pixel's width over its height
-    double unit;   // of lengths, in half picture heights
+    double length_unit; // of lengths, in half picture heights
 };
 #ifdef EXACT
 layout(std430, binding = BINDING_NODES) buffer Canvas {
@@ -53,7 +53,7 @@ void main() {
     ivec2 p = corner + ivec2(gl_FragCoord.xy);
     ivec2 place = (p - first) >> shift;
     int block = place.y * columns + place.x;
-    precise double tall = double(size.y) * unit;
+    precise double tall = double(size.y) * length_unit;
     precise double x = aspect * double(2 * p.x + 1 - size.x) / tall;
     precise double y = double(size.y - 2 * p.y - 1) / tall;
     double red = 0.0lf, green = 0.0lf, blue = 0.0lf;

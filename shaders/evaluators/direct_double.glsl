@@ -27,7 +27,8 @@ layout(std140, binding = BINDING_DIRECT) uniform Direct {
     ivec2 size;     // of the picture, in pixels
     uint ghost_count; // a multiple of STEP; the last ones of each kind may have no weight
     vec2 unit;      // of `direct`
-    dvec2 aspect;   // a pixel's width over its height, and the unit of lengths in half picture heights
+    double aspect;  // a pixel's width over its height
+    double length_unit; // the unit of lengths, in half picture heights
     uvec4 runs[DIRECT_RUNS / 4]; // where the ghosts of each kind of bell begin, and where the last of them end
 };
 
@@ -50,8 +51,8 @@ layout(std140, binding = BINDING_DIRECT) uniform Direct {
 
 dvec3 glare(ivec2 pixel) {
     ivec2 p = corner + pixel;
-    precise double tall = double(size.y) * aspect.y;
-    precise double x = aspect.x * double(2 * p.x + 1 - size.x) / tall;
+    precise double tall = double(size.y) * length_unit;
+    precise double x = aspect * double(2 * p.x + 1 - size.x) / tall;
     precise double y = double(size.y - 2 * p.y - 1) / tall;
     double red = 0.0lf, green = 0.0lf, blue = 0.0lf;
 #ifdef EACH_BELL

@@ -6,13 +6,14 @@ use comfy_table::{CellAlignment, Table, presets as styles};
 use serde::Serialize;
 
 use crate::Result;
-use crate::scene::Lens;
 use crate::scene::presets::{self, DEFAULT_PRESET};
+use crate::scene::{Lens, VeilFunction};
 use crate::terminal::stdout;
 
 /// List the lenses that come with vglare, or print one of them
 ///
-/// A lens is a table of ghosts, as it turns any light into them. The veil is the part of a light's flux that they carry.
+/// A lens is a table of ghosts, as it turns any light into them; the part of a light's flux that they carry is shown in per cent.
+/// Some have a veil, too: the part of every pixel's light that is scattered. --veil none leaves it out.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
@@ -48,8 +49,12 @@ struct Entry<'a> {
     name: &'a str,
     default: bool,
     ghosts: usize,
-    /// Part of a light's luminous flux, 0 to 1.
+    /// Part of a light's luminous flux that the ghosts carry, 0 to 1.
     veil: f64,
+    /// Part of every pixel's light that is scattered, 0 to 1; none where the lens has no veil.
+    scatter: Option<f64>,
+    /// Whether the ghosts are left out where there is a veil.
+    replaces_ghosts: bool,
     description: &'a str,
 }
 
@@ -60,6 +65,11 @@ impl<'a> From<&'a Lens> for Entry<'a> {
             default: lens.name == DEFAULT_PRESET,
             ghosts: lens.ghosts.len(),
             veil: lens.veiling_share(),
+            scatter: lens
+                .veil
+                .as_ref()
+                .and_then(|veil| Some(VeilFunction::new(&veil.section.parameters).ok()?.psf().energy())),
+            replaces_ghosts: lens.veil.as_ref().is_some_and(|veil| veil.replaces_ghosts),
             description: &lens.description,
         }
     }
@@ -73,12 +83,19 @@ fn json(out: &mut dyn Write, lenses: &[Lens]) -> io::Result<()> {
 fn table(out: &mut dyn Write, lenses: &[Lens]) -> io::Result<()> {
     let mut table = Table::new();
     table.load_style(styles::NOTHING);
-    table.set_header(["name", "ghosts", "veil %", "description"]);
-    for Entry { name, ghosts, veil, description, .. } in lenses.iter().map(Entry::from) {
+    table.set_header(["name", "ghosts", "of lights %", "of pixels %", "description"]);
+    for Entry { name, ghosts, veil, scatter, description, .. } in lenses.iter().map(Entry::from) {
         let description = description.rsplit_once("; veil ").map_or(description, |(text, _)| text);
-        table.add_row([name, &ghosts.to_string(), &format!("{:.1}", 100.0 * veil), description]);
+        let percent = |part: f64| format!("{:.1}", 100.0 * part);
+        table.add_row([
+            name,
+            &ghosts.to_string(),
+            &percent(veil),
+            &scatter.map(percent).unwrap_or_default(),
+            description,
+        ]);
     }
-    table.column_iter_mut().skip(1).take(2).for_each(|column| column.set_cell_alignment(CellAlignment::Right));
+    table.column_iter_mut().skip(1).take(3).for_each(|column| column.set_cell_alignment(CellAlignment::Right));
     writeln!(out, "{}\n\nWhere no lens is named, it is {DEFAULT_PRESET}.", table.trim_fmt())
 }
 

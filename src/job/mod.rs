@@ -47,7 +47,7 @@ pub use planning::{Planning, plan};
 pub use settings::{bright_light, settings};
 #[cfg(feature = "laboratory")]
 pub(crate) use veil::plan_of;
-pub use veil::{Ledger, NoSources, VeilError, Veiled};
+pub use veil::{Ledger, NoSources, VeilError, VeilPlanned, Veiled, plan_veil};
 pub use watch::{Step, Unwatched, Watch};
 
 /// What is wanted. The picture does not depend on what else is.

@@ -2,7 +2,7 @@
 
 use super::{Accuracy, Look, LookLens, LookLights, Shared, Veil};
 use crate::choices::{LengthUnit, Mix};
-use crate::scene::presets::DEFAULT_PRESET;
+use crate::scene::presets::{DEFAULT_PRESET, NO_LENS};
 use crate::scene::{AccuracySection, FindOptions, FindSection, LookSection, SceneFile, VeilSection};
 use crate::{Error, Result};
 
@@ -35,13 +35,20 @@ impl Look {
         {
             return Err(Error::Usage(format!("the scene says that the picture spans {one}° and {other}°")));
         }
-        let veil = scene.veil.map(|veil| Veil::new(&veil, mix == Some(Mix::Add))).transpose();
-        let veil = veil.map_err(|fault| Error::Usage(format!("the scene's veil: {fault}")))?;
+        let adds = mix == Some(Mix::Add);
+        let (veil, of_lens) = match scene.veil {
+            None if scene.no_veil => (None, None),
+            None => {
+                (lens.veil().map(|veil| Veil::new(&veil.section, adds)), lens.veil().and_then(|veil| veil.section.fov))
+            }
+            Some(veil) => (Some(Veil::new(&veil, adds)), None),
+        };
+        let veil = veil.transpose().map_err(|fault| Error::Usage(format!("the scene's veil: {fault}")))?;
         Ok(Self {
             description: scene.description,
             lens,
             unit: unit.unwrap_or_default(),
-            fov: fov.or(of_veil),
+            fov: fov.or(of_veil).or(of_lens),
             axis: scene.axis.unwrap_or_default(),
             size: size.unwrap_or(1.0),
             tint: tint.unwrap_or([1.0; 3]),
@@ -71,9 +78,15 @@ impl Look {
         } = self;
         let (preset, lens_ghosts) = match lens {
             LookLens::Preset(lens) => (Some(lens.name.clone()), Vec::new()),
+            // Ghosts in whose place there is a veil.
+            LookLens::File(_, lens) if self.lens_ghosts().len() < lens.ghosts.len() => {
+                (Some(NO_LENS.to_owned()), Vec::new())
+            }
             LookLens::File(_, lens) => (None, lens.ghosts.clone()),
             LookLens::Own(ghosts) => (None, ghosts.to_vec()),
         };
+        // A lens that is written as a table has no veil of its own.
+        let preset_has_veil = preset.is_some() && lens.veil().is_some();
         let listed = match lights {
             LookLights::Found => None,
             LookLights::Listed(lights) | LookLights::FoundAnd(lights) => Some(lights.to_vec()),
@@ -107,6 +120,7 @@ impl Look {
             },
             accuracy: AccuracySection { goal: Some(goal), allow_floor, evaluator },
             veil: veil.as_ref().map(|veil| VeilSection { fov: *fov, ..veil.section() }),
+            no_veil: veil.is_none() && preset_has_veil,
             lights: listed,
             ghosts: ghosts.to_vec(),
             lens_ghosts,
@@ -175,7 +189,12 @@ mod tests {
             let veil = Some(Veil::new(&section, adds).unwrap());
             Look { veil, fov: Some(50.0), unit: LengthUnit::Degrees, ..Look::default() }
         };
-        for look in [Look::default(), full.clone(), none, ghost_and_photo, added, veiled(false), veiled(true)] {
+        let eye = Look::default().through(LookLens::preset("eye").unwrap(), false).unwrap();
+        let without = Look { veil: None, ..eye.clone() };
+        assert!(eye.lens_ghosts().is_empty() && without.lens_ghosts().len() == 9);
+        for look in
+            [Look::default(), full.clone(), none, ghost_and_photo, added, veiled(false), veiled(true), eye, without]
+        {
             assert_eq!(through_a_file(&look), look);
         }
         let filed =

@@ -59,12 +59,12 @@ impl Look {
 
     /// Whether lights of the photo shine.
     pub fn finds(&self) -> bool {
-        !matches!(self.lights, LookLights::Listed(_)) && !self.lens.ghosts().is_empty()
+        !matches!(self.lights, LookLights::Listed(_)) && !self.lens_ghosts().is_empty()
     }
 
     /// Whether there are any ghosts to be rendered: not through a lens without ghosts, which makes none of any light.
     pub fn renders(&self) -> bool {
-        self.strength != 0.0 && !(self.lens.ghosts().is_empty() && self.ghosts.is_empty())
+        self.strength != 0.0 && !(self.lens_ghosts().is_empty() && self.ghosts.is_empty())
     }
 
     /// Searches a photo for lights, on its frame as [`Look::frame`] gives it.
@@ -74,7 +74,10 @@ impl Look {
 
     /// The ghosts that the lens makes of `lights`, then those that no light makes, in the look's size and tint.
     pub fn ghosts(&self, lights: &[Light]) -> Vec<Ghost> {
-        let mut ghosts = scene::ghosts(lights, &self.lens(), self.axis);
+        let mut ghosts = match self.lens_ghosts() {
+            [] => Vec::new(),
+            _ => scene::ghosts(lights, &self.lens(), self.axis),
+        };
         ghosts.extend_from_slice(&self.ghosts);
         // A look that leaves them alone keeps every bit.
         if self.size != 1.0 {

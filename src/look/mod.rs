@@ -12,10 +12,10 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use crate::Result;
 use crate::choices::{Evaluator, LengthUnit, Mix, Normalize};
 use crate::scene::presets::{self, DEFAULT_PRESET};
-use crate::scene::{FindOptions, Ghost, Goal, Lens, LensGhost, Light};
+use crate::scene::{FindOptions, Ghost, Goal, Lens, LensGhost, LensVeil, Light};
+use crate::{Error, Result};
 
 pub use gather::{Gathered, Search};
 pub use shared::Shared;
@@ -133,6 +133,14 @@ impl LookLens {
             Self::Own(ghosts) => ghosts,
         }
     }
+
+    /// What every pixel scatters in it, if it says so.
+    pub fn veil(&self) -> Option<&LensVeil> {
+        match self {
+            Self::Preset(lens) | Self::File(_, lens) => lens.veil.as_ref(),
+            Self::Own(_) => None,
+        }
+    }
 }
 
 impl Look {
@@ -141,9 +149,29 @@ impl Look {
         match &self.lens {
             LookLens::Preset(lens) | LookLens::File(_, lens) => Lens::clone(lens),
             LookLens::Own(ghosts) => {
-                Lens { name: "scene file".to_owned(), description: self.description.clone(), ghosts: ghosts.to_vec() }
+                let (name, description) = ("scene file".to_owned(), self.description.clone());
+                Lens { name, description, ghosts: ghosts.to_vec(), veil: None }
             }
         }
+    }
+
+    /// What the lens makes of a light: nothing where its ghosts stand for a veil, and there is one.
+    pub fn lens_ghosts(&self) -> &[LensGhost] {
+        if self.veil.is_some() && self.lens.veil().is_some_and(|veil| veil.replaces_ghosts) {
+            return &[];
+        }
+        self.lens.ghosts()
+    }
+
+    /// The same through another lens, with its veil, if it has one, in place of the one before.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a veil that cannot be had, as where a file that it names is gone.
+    pub fn through(self, lens: LookLens, adds: bool) -> Result<Self> {
+        let veil = lens.veil().map(|veil| Veil::new(&veil.section, adds)).transpose();
+        let veil = veil.map_err(|fault| Error::Usage(format!("the lens's veil: {fault}")))?;
+        let fov = self.fov.or(lens.veil().and_then(|veil| veil.section.fov));
+        Ok(Self { lens, veil, fov, ..self })
     }
 
     /// The lights, of which `found` are the photo's; they come first.

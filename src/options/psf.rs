@@ -22,11 +22,11 @@ pub struct PsfArgs {
     #[arg(long, value_enum)]
     luminance: Option<Luminance>,
 
-    /// Of gaussian: the standard deviation, in half picture heights
+    /// Of gaussian: the standard deviation, in the look's unit, half picture heights by default
     #[arg(long, value_name = "W", value_parser = finite)]
     width: Option<f64>,
 
-    /// Of mixture: standard deviations, in half picture heights
+    /// Of mixture: standard deviations, in the look's unit
     #[arg(long, value_name = "W,W,...", value_delimiter = ',', value_parser = finite)]
     widths: Option<Vec<f64>>,
 
@@ -38,11 +38,11 @@ pub struct PsfArgs {
     #[arg(long, value_name = "R,G,B;R,G,B;...", value_delimiter = ';', value_parser = colour)]
     tints: Option<Vec<[f64; 3]>>,
 
-    /// Of abg: a / (b + r^g), r in half picture heights, up to the radius END; below g = 2.05 there must be one
+    /// Of abg: a / (b + r^g), r in the look's unit, up to the radius END; below g = 2.05 there must be one
     #[arg(long, value_name = "A,B,G[,END]", value_parser = tail)]
     abg: Option<Tail>,
 
-    /// Of table: a CSV file of radius, in half picture heights, and value
+    /// Of table: a CSV file of radius, in the look's unit, and value
     #[arg(long, value_name = "FILE")]
     table: Option<PathBuf>,
 

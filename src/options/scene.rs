@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use glam::DVec2;
 
 use crate::Result;
+use crate::choices::Mix;
 use crate::look::{Look, LookLens, LookLights};
 use crate::options::UnitArgs;
 use crate::options::numbers::point;
@@ -39,7 +40,7 @@ pub struct SceneArgs {
     #[arg(long, value_name = "FILE")]
     add_lights: Option<PathBuf>,
 
-    /// Where the lens's axis meets the picture, in half picture heights from its centre: ghosts lie on lines through it
+    /// Where the lens's axis meets the picture, in half picture heights (or --unit) from its centre: ghosts lie on lines through it
     /// [default: 0,0]
     #[arg(long, value_name = "X,Y", value_parser = point, allow_hyphen_values = true)]
     axis: Option<DVec2>,
@@ -56,24 +57,28 @@ impl SceneArgs {
         given.flat_map(|path| std::iter::once(path.clone()).chain(scene::referred(path))).collect()
     }
 
+    /// The lens that is asked for.
+    fn lens(&self) -> Result<Option<LookLens>> {
+        let lens = match (&self.lens, &self.preset) {
+            (Some(path), _) if path.as_os_str() == NO_LENS => LookLens::preset(NO_LENS)?,
+            (Some(path), _) => LookLens::File(path.clone(), scene::read_lens(path)?.into()),
+            (None, Some(name)) => LookLens::preset(name)?,
+            (None, None) => return Ok(None),
+        };
+        Ok(Some(lens))
+    }
+
     /// The look that the files and options give; its files are read and checked before anything long begins.
     ///
     /// # Errors
     /// [`crate::Error::SceneFile`] for a file that is not right, [`crate::Error::UnknownPreset`].
     pub fn look(&self) -> Result<Look> {
-        let mut look = match &self.scene {
-            Some(path) => Look::from_scene(scene::read_scene(path)?)?,
-            None => Look::default(),
-        };
-        look = self.unit.over(look);
-        if let Some(path) = &self.lens
-            && path.as_os_str() == NO_LENS
-        {
-            look.lens = LookLens::preset(NO_LENS)?;
-        } else if let Some(path) = &self.lens {
-            look.lens = LookLens::File(path.clone(), scene::read_lens(path)?.into());
-        } else if let Some(name) = &self.preset {
-            look.lens = LookLens::preset(name)?;
+        let file = self.scene.as_deref().map(scene::read_scene).transpose()?.unwrap_or_default();
+        let (says_veil, adds) = (file.veil.is_some() || file.no_veil, file.look.mix == Some(Mix::Add));
+        let mut look = self.unit.over(Look::from_scene(file)?);
+        if let Some(lens) = self.lens()? {
+            // What a scene says of the veil is said of any lens.
+            look = if says_veil { Look { lens, ..look } } else { look.through(lens, adds)? };
         }
         if let Some(path) = &self.lights {
             look.lights = LookLights::Listed(scene::read_lights_in(path, look.unit)?.into());

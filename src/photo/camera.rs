@@ -44,6 +44,15 @@ impl View {
         Self { focal, said: Some(degrees), from: "as given".to_owned() }
     }
 
+    /// The same of a picture made larger or smaller, in whose pixels it then is.
+    pub fn resized(self, from: &Frame, to: &Frame) -> Self {
+        let spans_width = self.said.is_some();
+        let width = |frame: &Frame| frame.pixel_aspect * f64::from(frame.width);
+        let height = |frame: &Frame| f64::from(frame.height);
+        let scale = if spans_width { width(to) / width(from) } else { height(to) / height(from) };
+        Self { focal: self.focal * scale, ..self }
+    }
+
     /// What the width of the picture spans, in degrees, as the camera formed it; that of a plane as of a rectilinear one.
     pub fn across(&self, frame: &Frame, projection: Projection) -> f64 {
         let width = frame.pixel_aspect * f64::from(frame.width);

@@ -24,7 +24,7 @@
 //! add = false                 # whether the file's lights are added to the photo's
 //!
 //! [veil]                      # every pixel a source; docs/scenes.md has the functions and their keys
-//! psf = "cie"
+//! psf = "cie"                 # or "none", where the lens has a veil and there is to be none
 //! age = 60
 //! fov = 50                    # degrees across the picture's width
 //!
@@ -53,8 +53,8 @@
 //! share = 0.01                # of the light's flux; 0 or more
 //! ```
 //!
-//! Lengths are in half picture heights unless `unit` in `[look]` says otherwise, the origin is the picture's centre, y points up. A lens file has `description`
-//! and `[[lens_ghost]]` only, a light file `[[light]]` only; a light file may also be what `vglare lights --json` prints.
+//! Lengths are in half picture heights unless `unit` in `[look]` says otherwise, the origin is the picture's centre, y points up. A lens file has `description`,
+//! `[[lens_ghost]]` and `[veil]` only, a light file `[[light]]` only; a light file may also be what `vglare lights --json` prints.
 
 use std::fs;
 use std::io::Read as _;
@@ -93,8 +93,10 @@ pub struct SceneFile {
     pub find: FindSection,
     /// How exact the glare is to be.
     pub accuracy: AccuracySection,
-    /// What every pixel scatters; nothing where it is `None`.
+    /// What every pixel scatters; where it is `None`, what the lens says.
     pub veil: Option<VeilSection>,
+    /// Whether the file says that there is none, though its lens have one.
+    pub no_veil: bool,
     /// Lights, in the file's order; `None` where it leaves them to the photo, and empty for `light = []`.
     pub lights: Option<Vec<Light>>,
     /// Ghosts that no light makes.
@@ -122,6 +124,7 @@ pub(super) fn parse_scene(path: &Path, text: &str) -> Result<SceneFile> {
     let bells = Bells::new(path, table.profiles, period).map_err(located)?;
     let ghosts = table.ghosts.into_iter().map(|ghost| ghost.ghost(&bells));
     let lens_ghosts = table.lens_ghosts.into_iter().map(|ghost| ghost.lens_ghost(&bells));
+    let veil = table.veil.map(|veil| veil::section(path, veil)).transpose().map_err(located)?;
     Ok(SceneFile {
         description: table.description,
         preset,
@@ -131,7 +134,8 @@ pub(super) fn parse_scene(path: &Path, text: &str) -> Result<SceneFile> {
         look: table.look,
         find: table.find,
         accuracy: accuracy.unwrap_or_default(),
-        veil: table.veil.map(|veil| veil::section(path, veil)).transpose().map_err(located)?,
+        no_veil: matches!(veil, Some(None)),
+        veil: veil.flatten(),
         lights: table.lights.map(converted),
         ghosts: ghosts.collect::<Result<_, _>>().map_err(located)?,
         lens_ghosts: lens_ghosts.collect::<Result<_, _>>().map_err(located)?,
@@ -198,7 +202,8 @@ pub(super) fn lens(path: &Path, name: &str, text: &str) -> Result<Lens> {
     let bells = Bells::new(path, table.profiles, None).map_err(located)?;
     let ghosts = table.ghosts.into_iter().map(|ghost| ghost.lens_ghost(&bells));
     let ghosts = ghosts.collect::<Result<_, _>>().map_err(located)?;
-    Ok(Lens { name: name.to_owned(), description: table.description, ghosts })
+    let veil = table.veil.map(|veil| veil::of_lens(path, veil)).transpose().map_err(located)?.flatten();
+    Ok(Lens { name: name.to_owned(), description: table.description, ghosts, veil })
 }
 
 fn converted<T: Into<U>, U>(tables: Vec<T>) -> Vec<U> {

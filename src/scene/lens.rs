@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{Ghost, LensGhost, Light};
+use super::{Ghost, LensGhost, Light, VeilSection};
 
 /// A lens: every light gets one ghost from each entry of its table.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,6 +13,17 @@ pub struct Lens {
     pub description: String,
     /// What it makes of a light.
     pub ghosts: Vec<LensGhost>,
+    /// What every pixel scatters in it, if it says so.
+    pub veil: Option<LensVeil>,
+}
+
+/// The veil of a lens.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LensVeil {
+    /// The function, and how it is laid.
+    pub section: VeilSection,
+    /// Whether the lens's ghosts are what the lights have of a veil, so that they are left out where there is one.
+    pub replaces_ghosts: bool,
 }
 
 impl Lens {
@@ -99,7 +110,8 @@ mod tests {
     fn ghosts_go_light_by_light() {
         let at = |x| Light { position: DVec2::new(x, 0.0), flux: [1.0; 3], size: 0.0, muted: false };
         let along = |a| lens_ghost(a, DVec2::ONE);
-        let lens = Lens { name: String::new(), description: String::new(), ghosts: vec![along(1.0), along(-1.0)] };
+        let lens =
+            Lens { name: String::new(), description: String::new(), ghosts: vec![along(1.0), along(-1.0)], veil: None };
         let centers: Vec<_> =
             ghosts(&[at(0.5), at(0.25)], &lens, DVec2::ZERO).iter().map(|ghost| ghost.center.x).collect();
         assert_eq!(centers, [0.5, -0.5, 0.25, -0.25]);

@@ -23,7 +23,7 @@ mod write;
 pub use emission::{Emission, is_light};
 pub use file::{SceneFile, read_lens, read_lights, read_lights_in, read_scene};
 pub use find::{FindOptions, Found, find};
-pub use lens::{Lens, ghosts};
+pub use lens::{Lens, LensVeil, ghosts};
 pub(crate) use referred::referred;
 pub use sections::{AccuracySection, FindSection, Goal, LookSection};
 pub use veil::{VeilFunction, VeilSection, absolute, check_fov};

@@ -25,9 +25,10 @@ macro_rules! preset {
 }
 
 /// From the cleanest lens to the dirtiest, then the eye.
-static PRESETS: [Preset; 7] = [
+static PRESETS: [Preset; 8] = [
     preset!("modern-prime"),
     preset!("classic-prime"),
+    preset!("classic-veil"),
     preset!("anamorphic"),
     preset!("zoom"),
     preset!("vintage-uncoated"),
@@ -50,7 +51,8 @@ pub const NO_LENS: &str = "none";
 /// [`Error::UnknownPreset`], which lists the names there are.
 pub fn named(name: &str) -> Result<Lens> {
     if name == NO_LENS {
-        return Ok(Lens { name: name.to_owned(), description: "No ghosts.".to_owned(), ghosts: Vec::new() });
+        let (name, description) = (name.to_owned(), "No ghosts.".to_owned());
+        return Ok(Lens { name, description, ghosts: Vec::new(), veil: None });
     }
     find(name)?.lens()
 }
@@ -80,6 +82,8 @@ impl Preset {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::psf::Unit;
+    use crate::scene::VeilFunction;
 
     #[test]
     fn every_preset_keeps_what_its_description_says() {
@@ -119,6 +123,44 @@ mod tests {
             "{message}"
         );
         assert!(PRESETS.iter().all(|p| p.name.chars().all(|c| c.is_ascii_lowercase() || c == '-')));
+    }
+
+    #[test]
+    fn veils_of_presets_are_on_the_picture_and_as_strong_as_their_ghosts() {
+        let lenses: Vec<_> = all().iter().map(|preset| preset.lens().unwrap()).collect();
+        let veils = |lens: &Lens| {
+            let veil = lens.veil.clone()?;
+            assert_eq!(veil.section.fov, None, "{}", lens.name);
+            let function = VeilFunction::new(&veil.section.parameters).unwrap();
+            assert_eq!(function.psf().unit(), Unit::Look, "{}: no field of view is needed", lens.name);
+            Some((lens.name.clone(), function.psf().energies(), veil.replaces_ghosts))
+        };
+        let found: Vec<_> = lenses.iter().filter_map(veils).collect();
+        let names: Vec<_> = found.iter().map(|(name, _, replaces)| (&**name, *replaces)).collect();
+        assert_eq!(names, [("classic-veil", false), ("haze-filter", true), ("eye", true)]);
+        // The mist scatters as much by every pixel as by lights, in each colour.
+        let haze = named("haze-filter").unwrap();
+        for (channel, energy) in found[1].1.into_iter().enumerate() {
+            let of_ghosts: f64 = haze.ghosts.iter().map(|ghost| ghost.share * ghost.tint[channel]).sum();
+            assert!((energy / of_ghosts - 1.0).abs() < 1e-9, "{channel}: {energy} {of_ghosts}");
+        }
+        assert_eq!(named(DEFAULT_PRESET).unwrap().veil, None);
+    }
+
+    /// Its veil against all of that function, from 0.1 to 60 degrees.
+    #[test]
+    fn the_eyes_veil_follows_the_published_function_to_a_hundredth() {
+        let veil = named("eye").unwrap().veil.unwrap();
+        let function = VeilFunction::new(&veil.section.parameters).unwrap();
+        let to_steradian = (20.0f64.to_radians()).powi(-2);
+        for place in 0..=200 {
+            let degrees = 0.1 * 600.0f64.powf(f64::from(place) / 200.0);
+            let published = 0.384 * 2.61e6 * (-(degrees / 0.02f64).powi(2)).exp()
+                + 0.478 * 20.91 / (degrees + 0.02).powi(3)
+                + 0.138 * 72.37 / (degrees + 0.02).powi(2);
+            let ours = to_steradian * function.psf().value(degrees / 20.0);
+            assert!((ours / published - 1.0).abs() < 1e-2, "{degrees} degrees: {ours} {published}");
+        }
     }
 
     /// The eye's preset against the function that it stands for, from 2.5 to 11 degrees.

@@ -47,6 +47,7 @@ pub(super) struct LensTable {
     pub profiles: Vec<ProfileTable>,
     #[serde(rename = "lens_ghost")]
     pub ghosts: Vec<LensGhostTable>,
+    pub veil: Option<Spanned<toml::Table>>,
 }
 
 /// A file of lights in TOML.

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use serde::Serialize;
 use toml::{Spanned, Table, Value};
 
+use super::LensVeil;
 use super::bells::Fault;
 use super::file::contents;
 use crate::choices::{Border, Projection};
@@ -75,11 +76,33 @@ pub fn check_fov(fov: f64, projection: Option<Projection>) -> Result<(), psf::Fa
     Err(psf::Fault::new("fov", format!("a field of view is from 0.1 to {most} degrees, and not {fov}")))
 }
 
-/// The section that a table of the file at `path` is.
-pub(super) fn section(path: &Path, table: Spanned<Table>) -> Result<VeilSection, Fault> {
+/// What `psf` is where there is to be no veil.
+pub const NO_VEIL: &str = "none";
+
+/// The veil of a lens, as a table of the file at `path` says it.
+pub(super) fn of_lens(path: &Path, mut table: Spanned<Table>) -> Result<Option<LensVeil>, Fault> {
+    let replaces_ghosts = match table.as_mut().remove("replaces_ghosts") {
+        None => false,
+        Some(Value::Boolean(replaces)) => replaces,
+        Some(other) => {
+            let message = format!("expected true or false, found {other} in `veil.replaces_ghosts`");
+            return Err(Fault { span: table.span(), message });
+        }
+    };
+    Ok(section(path, table)?.map(|section| LensVeil { section, replaces_ghosts }))
+}
+
+/// The section that a table of the file at `path` is; none where it says that there is none.
+pub(super) fn section(path: &Path, table: Spanned<Table>) -> Result<Option<VeilSection>, Fault> {
     let span = table.span();
     let at = |message: String| Fault { span: span.clone(), message };
     let mut table = table.into_inner();
+    if table.get("psf").and_then(Value::as_str) == Some(NO_VEIL) {
+        return match table.keys().find(|key| *key != "psf") {
+            Some(key) => Err(at(format!("`veil.{key}` is of no veil, and `psf` is \"{NO_VEIL}\""))),
+            None => Ok(None),
+        };
+    }
     let fov = number(&mut table, "fov").map_err(at)?;
     let tolerance = number(&mut table, "tolerance").map_err(at)?;
     if let Some(tolerance) = tolerance.filter(|tolerance| !(*tolerance > 0.0 && *tolerance < 1.0)) {
@@ -95,7 +118,7 @@ pub(super) fn section(path: &Path, table: Spanned<Table>) -> Result<VeilSection,
     let fault = |fault: psf::Fault| at(format!("{} in `veil.{}`", fault.reason, fault.key));
     fov.map_or(Ok(()), |fov| check_fov(fov, projection)).map_err(fault)?;
     VeilFunction::new(&parameters).map_err(fault)?;
-    Ok(VeilSection { parameters, fov, projection, border, tolerance })
+    Ok(Some(VeilSection { parameters, fov, projection, border, tolerance }))
 }
 
 /// A path that means the same from everywhere.

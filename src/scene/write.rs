@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use super::file::parse_scene;
 use super::sections::{FindSection, Goal, LookSection};
+use super::veil::NO_VEIL;
 use super::{Ghost, LensGhost, Light, SceneFile, VeilSection};
 use crate::choices::Evaluator;
 use crate::series::{Bell, Profile};
@@ -49,7 +50,10 @@ pub fn to_toml(scene: &SceneFile) -> String {
         look: (scene.look != LookSection::default()).then_some(scene.look),
         find: (scene.find != FindSection::default()).then_some(scene.find),
         accuracy: AccuracyOut::of(scene),
-        veil: scene.veil.as_ref(),
+        veil: match &scene.veil {
+            Some(veil) => Some(VeilOut::Some(veil)),
+            None => scene.no_veil.then_some(VeilOut::None { psf: NO_VEIL }),
+        },
         lens_ghost: scene.lens_ghosts.iter().map(|ghost| LensGhostOut::new(ghost, &mut profiles)).collect(),
         ghost: scene.ghosts.iter().map(|ghost| GhostOut::new(ghost, &mut profiles)).collect(),
         profile: profiles.tables(),
@@ -76,7 +80,7 @@ struct SceneOut<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     accuracy: Option<AccuracyOut>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    veil: Option<&'a VeilSection>,
+    veil: Option<VeilOut<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     light: Option<Vec<LightOut>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -85,6 +89,13 @@ struct SceneOut<'a> {
     ghost: Vec<GhostOut>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     profile: Vec<ProfileOut>,
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum VeilOut<'a> {
+    Some(&'a VeilSection),
+    None { psf: &'static str },
 }
 
 #[derive(Serialize, Default, PartialEq)]

@@ -10,6 +10,7 @@ mod look;
 mod outputs;
 mod panics;
 mod plan;
+mod preset_veils;
 mod refusals;
 mod rex;
 mod scarce;

@@ -82,8 +82,11 @@ fn about_unit(out: &mut dyn Write, work: &Done<'_>) -> io::Result<()> {
 
 /// What is light, and what it becomes.
 fn about_scene(out: &mut dyn Write, scene: &Gathered, look: &Look) -> io::Result<()> {
-    if look.lens.ghosts().is_empty() && scene.ghosts.is_empty() {
-        return writeln!(out, "lens     none, so no ghosts");
+    if look.lens_ghosts().is_empty() && scene.ghosts.is_empty() {
+        return match look.lens.ghosts() {
+            [] => writeln!(out, "lens     none, so no ghosts"),
+            _ => writeln!(out, "lens     {}: a veil in place of its ghosts", look.lens().name),
+        };
     }
     let muted = match scene.lights.iter().filter(|light| light.muted).count() {
         0 => String::new(),
@@ -128,7 +131,7 @@ fn about_veil(out: &mut dyn Write, veiled: &Veiled) -> io::Result<()> {
     let Veiled { parameters, projection, fov, fov_from, strength, scattered, terms, error, ledger, dark, .. } = veiled;
     write!(out, "veil     {}", parameters.psf)?;
     if let Some((fov, from)) = fov.zip(fov_from.as_ref()) {
-        write!(out, ", {from}: {}° across a {} picture", angle(fov), said(projection))?;
+        write!(out, ", {from}: {} across a {} picture", text::angle(fov), said(projection))?;
     }
     let mean = |values: [f64; 3]| values.into_iter().sum::<f64>() / 3.0;
     writeln!(out, ": scatters {:.1} % of the light, by {terms} Gaussians", 100.0 * strength * mean(*scattered))?;
@@ -149,16 +152,6 @@ fn about_veil(out: &mut dyn Write, veiled: &Veiled) -> io::Result<()> {
         "error    of the veil, by its own brightness at each pixel: {:.1e} measured at {} pixels, {:.1e} predicted, {:.1e} asked",
         error.measured, error.pixels, error.predicted, error.asked
     )
-}
-
-/// An angle to a thousandth of a degree where it is one of these, else to a tenth.
-fn angle(degrees: f64) -> String {
-    let near = (1e3 * degrees).round() * 1e-3;
-    if (near - degrees).abs() < 1e-9 * degrees {
-        format!("{}", (1e3 * near).round() / 1e3)
-    } else {
-        format!("{degrees:.1}")
-    }
 }
 
 /// A choice as it is written.

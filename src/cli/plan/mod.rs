@@ -10,12 +10,13 @@ use serde::Serialize;
 use super::found;
 use crate::frame::Frame;
 use crate::gpu::{Device, Info};
-use crate::job::{self, Planning};
+use crate::job::{self, Planning, VeilPlanned};
 use crate::look::{Gathered, Look};
 use crate::options::AccuracyArgs;
 use crate::options::FindArgs;
 use crate::options::ReadArgs;
 use crate::options::SceneArgs;
+use crate::options::VeilArgs;
 use crate::plan::{CostModel, Plan};
 use crate::problem::Problem;
 use crate::terminal::stderr::warn;
@@ -48,6 +49,9 @@ pub struct Args {
     scene: SceneArgs,
 
     #[command(flatten)]
+    veil: VeilArgs,
+
+    #[command(flatten)]
     find: FindArgs,
 
     #[command(flatten)]
@@ -58,6 +62,7 @@ const EXAMPLES: &str = "\
 Examples:
   vglare plan night.exr                               How, how exactly, how fast?
   vglare plan night.exr --budget 16 --size 3840x2160  How exact can a frame of film be?
+  vglare plan night.exr --veil cie --fov 50           How is a veil computed?
   vglare plan night.exr --tolerance 1e-5 --json";
 
 fn size(text: &str) -> Result<[u32; 2], String> {
@@ -74,7 +79,8 @@ fn size(text: &str) -> Result<[u32; 2], String> {
 /// Where the photo or a file of the scene cannot be read, where there is no plan, or standard output cannot be written.
 /// No OpenGL is no error.
 pub fn run(args: &Args) -> Result<()> {
-    let mut look = args.scene.look()?;
+    let mut look = args.veil.over(args.scene.look()?, args.accuracy.tolerance())?;
+    args.scene.unit.check(&look)?;
     look.find = args.find.over(look.find);
     look.accuracy = args.accuracy.over(look.accuracy);
     let photo = photo::read_with(&args.photo, &args.reading.options())?;
@@ -87,8 +93,9 @@ pub fn run(args: &Args) -> Result<()> {
     let planned =
         job::plan(&look.accuracy, &Problem::new(scene.ghosts.clone(), frame), info, args.accuracy.known(info))?;
     warn(&planned.warnings);
+    let veil = job::plan_veil(&look, &photo, &frame)?;
     let budget = look.accuracy.goal.budget();
-    let told = Told { photo: &args.photo, frame, look: &look, scene: &scene, planned: &planned, info, budget };
+    let told = Told { photo: &args.photo, frame, look: &look, scene: &scene, planned: &planned, veil, info, budget };
     if args.json { stdout::json(|out| told.json(out)) } else { stdout::print(|out| told.text(out)) }
 }
 
@@ -99,6 +106,7 @@ struct Told<'a> {
     look: &'a Look,
     scene: &'a Gathered,
     planned: &'a Planning,
+    veil: Option<VeilPlanned>,
     info: Option<&'a Info>,
     budget: Option<f64>,
 }
@@ -133,6 +141,7 @@ impl Told<'_> {
         }
         self.planned.notes.iter().try_for_each(|note| writeln!(out, "note     {note}"))?;
         text::details(out, self.planned)?;
+        self.veil.iter().try_for_each(|veil| text::veil(out, veil))?;
         writeln!(out, "device   {}", self.device())
     }
 
@@ -155,6 +164,7 @@ impl Told<'_> {
             lights: self.scene.lights.len(),
             ghosts: self.scene.ghosts.len(),
             plan: &self.planned.plan,
+            veil: self.veil.as_ref(),
             predicted_total: self.planned.plan.predicted.total(),
             budget_ms: self.budget,
             predicted_ms: self.planned.plan.cost(),
@@ -176,6 +186,7 @@ struct Json<'a> {
     lights: usize,
     ghosts: usize,
     plan: &'a Plan,
+    veil: Option<&'a VeilPlanned>,
     predicted_total: f64,
     budget_ms: Option<f64>,
     predicted_ms: Option<f64>,

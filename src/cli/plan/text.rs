@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::job::Planning;
+use crate::job::{Planning, VeilPlanned};
 use crate::plan::{Cost, Evaluator, Gathering, Group, Plan, Source, Transform};
 use crate::series::moments::Cells;
 
@@ -30,6 +30,38 @@ pub fn plan(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
         0 => writeln!(out),
         n => writeln!(out, ", {n} ghosts out of reach"),
     }
+}
+
+/// What is planned of a veil, in three lines.
+pub fn veil(out: &mut dyn Write, veil: &VeilPlanned) -> io::Result<()> {
+    let VeilPlanned { parameters, projection, fov, fov_from, scattered, terms, asked, predicted, rounding, .. } = veil;
+    write!(out, "veil     {}", parameters.psf)?;
+    if let Some((fov, from)) = fov.zip(fov_from.as_ref()) {
+        write!(out, ", {from}: {} across", angle(fov))?;
+    }
+    let share = 100.0 * scattered.iter().sum::<f64>() / 3.0;
+    let projection = format!("{projection:?}").to_lowercase();
+    writeln!(out, ", {projection}: scatters {share:.1} % of the light, by {terms} Gaussians")?;
+    write!(out, "         {} on the pixels", veil.direct)?;
+    for (level, count) in (1..).zip(&veil.lattices) {
+        write!(out, ", {count} on a lattice of {}", 1u64 << level)?;
+    }
+    write!(out, ", {} left out", veil.dropped)?;
+    if veil.reach > 0.0 {
+        write!(out, ", a kernel of {:.1} pixels", veil.reach)?;
+    }
+    writeln!(out, "; {:.0} operations a pixel and colour", veil.operations)?;
+    writeln!(
+        out,
+        "         error {predicted:.1e} of the local veil, {rounding:.1e} of it rounding, {asked:.1e} asked"
+    )?;
+    veil.notes.iter().try_for_each(|note| writeln!(out, "note     {note}"))
+}
+
+/// An angle to a thousandth of a degree where it is one of these, else to a tenth.
+pub fn angle(degrees: f64) -> String {
+    let near = (1e3 * degrees).round() / 1e3;
+    if (near - degrees).abs() < 1e-9 * degrees { format!("{near}°") } else { format!("{degrees:.1}°") }
 }
 
 /// All that there is to say of it: groups, lattice, the bounds of the error line by line, and every candidate.

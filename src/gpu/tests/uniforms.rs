@@ -192,7 +192,7 @@ fn shaders_read_the_uniforms_of_the_direct_sum_as_they_are_written() {
     let runs = 12..=11 + RUNS as u8;
     let begin = [("corner", 1..=2), ("size", 3..=4), ("ghost_count", 5..=5), ("unit", 6..=7)];
     let block = ("BINDING_DIRECT", DIRECT);
-    let of = |aspect: Given| [&begin[..], &[aspect, ("runs", runs.clone())]].concat();
-    held(&["evaluators/direct.glsl"], block, value, &of(("aspect", 8..=11)));
-    held(&["evaluators/direct_double.glsl"], block, value, &of(("aspect", 8..=11)));
+    let of = |aspect: &[Given]| [&begin[..], aspect, &[("runs", runs.clone())]].concat();
+    held(&["evaluators/direct.glsl"], block, value, &of(&[("aspect", 8..=11)]));
+    held(&["evaluators/direct_double.glsl"], block, value, &of(&[("aspect", 8..=9), ("length_unit", 10..=11)]));
 }

@@ -2,6 +2,7 @@
 
 mod account;
 mod measure;
+mod planned;
 mod planning;
 
 use rayon::prelude::*;
@@ -14,12 +15,13 @@ use crate::look::{Look, Veil as Wanted};
 use crate::photo::{Alpha, Photo, View};
 use crate::psf::Fault;
 use crate::scene::Emission;
-use crate::veil::{self, Kernel, Plan, Predicted};
+use crate::veil::{self, Geometry, Kernel, Plan, Predicted};
 use crate::{Error, Result};
 
 pub use account::{Ledger, NoSources, VeilError, Veiled};
 use account::{Loss, ledger, no_sources};
 use measure::{brightest, looked_at, measured};
+pub use planned::VeilPlanned;
 use planning::at_least;
 #[cfg(feature = "laboratory")]
 pub(crate) use planning::plan_of;
@@ -30,6 +32,42 @@ pub(super) struct Cast {
     planes: [Vec<f32>; 3],
     loses: Loss,
     pub veiled: Veiled,
+}
+
+/// What is known of a veil before anything is summed.
+pub(super) struct Prepared {
+    view: Option<View>,
+    geometry: Geometry,
+    size: [usize; 2],
+    /// A plan and a kernel for all channels, or one for each.
+    channels: Vec<(Plan, Kernel)>,
+    /// The tolerance that it is held to.
+    asked: f64,
+}
+
+/// Plans the veil of a look for pixels of a frame, which is the photo's, or that of a photo made larger or smaller.
+fn prepared(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame, stages: &mut Stages) -> Result<Prepared> {
+    check(look, wanted)?;
+    let view = seen(look, wanted, photo)?.map(|view| view.resized(&photo.frame, frame));
+    let geometry = wanted.geometry(frame, view.as_ref()).map_err(told)?;
+    let size = [frame.window.width as usize, frame.window.height as usize];
+    let (channels, asked) = stages.time("veil plan", || {
+        // What nobody asked for need not be had.
+        let least = look.accuracy.allow_floor || !wanted.is_held();
+        at_least(wanted, &geometry, size, wanted.tolerance(), least)
+    })?;
+    Ok(Prepared { view, geometry, size, channels, asked })
+}
+
+/// How the veil of a look would be computed on the pixels of a frame, which is the photo's, or that of a photo made larger or
+/// smaller; none without one.
+///
+/// # Errors
+/// Those that computing it would have before it begins.
+pub fn plan_veil(look: &Look, photo: &Photo, frame: &Frame) -> Result<Option<VeilPlanned>> {
+    let Some(wanted) = look.veil.as_ref().filter(|_| look.strength != 0.0) else { return Ok(None) };
+    let prepared = prepared(look, wanted, photo, frame, &mut Stages::default())?;
+    Ok(Some(VeilPlanned::new(look, wanted, frame, prepared)))
 }
 
 /// The veil that a look asks for; none without one.
@@ -45,16 +83,7 @@ pub(super) fn cast(
     stages: &mut Stages,
 ) -> Result<Option<Cast>> {
     let Some(wanted) = look.veil.as_ref().filter(|_| look.strength != 0.0) else { return Ok(None) };
-    check(look, wanted)?;
-    let view = seen(look, wanted, photo)?;
-    let geometry = wanted.geometry(frame, view.as_ref()).map_err(told)?;
-    let asked = wanted.tolerance();
-    let size = [photo.width() as usize, photo.height() as usize];
-    let (channels, asked) = stages.time("veil plan", || {
-        // What nobody asked for need not be had.
-        let least = look.accuracy.allow_floor || !wanted.is_held();
-        at_least(wanted, &geometry, size, asked, least)
-    })?;
+    let Prepared { view, geometry, size, channels, asked } = prepared(look, wanted, photo, frame, stages)?;
     let weighed = weighed(photo);
     let sources = weighed.as_ref().map_or(&photo.pixels, |pixels| pixels);
     let sources = veil::Photo::rgba(sources.as_flattened(), size).map_err(failed)?;
@@ -79,7 +108,7 @@ pub(super) fn cast(
         scattered: wanted.psf().energies(),
         centre: wanted.psf().centres(),
         terms: channels.iter().map(|(_, kernel)| kernel.mixture().terms.len()).max().unwrap_or(0),
-        notes: (asked > wanted.tolerance()).then(|| raised(asked, wanted.tolerance())).into_iter().collect(),
+        notes: raised(asked, wanted.tolerance()).into_iter().chain(coarse(&loses, size)).collect(),
         error: VeilError { asked, predicted: predicted.bound, measured: measured.0, pixels: measured.1 },
         ledger: ledger(&sources, &planes, &loses),
         dark,
@@ -94,8 +123,23 @@ fn seen(look: &Look, veil: &Wanted, photo: &Photo) -> Result<Option<View>> {
     veil.is_in_degrees().then(|| look.view(photo, &why())).transpose()
 }
 
-fn raised(tolerance: f64, asked: f64) -> String {
-    format!("the veil is held to {tolerance:.1e} of itself instead of {asked:.1e}: the lowest that can be had here")
+fn raised(tolerance: f64, asked: f64) -> Option<String> {
+    (tolerance > asked).then(|| {
+        format!("the veil is held to {tolerance:.1e} of itself instead of {asked:.1e}: the lowest that can be had here")
+    })
+}
+
+/// Says so where a pixel's own share of what it scatters is more than all of that, and it gains light.
+fn coarse(loses: &Loss, [width, height]: [usize; 2]) -> Option<String> {
+    let (_, lost) = loses.at(height / 2 * width + width / 2);
+    let most = lost.into_iter().fold(0.0, f64::min);
+    (most < 0.0).then(|| {
+        format!(
+            "the pixels are coarser than the function's core: in the middle of the picture they come out {:.2} times as bright, by the \
+             veil's definition",
+            1.0 - most
+        )
+    })
 }
 
 /// Whether a look's veil can be what it says.

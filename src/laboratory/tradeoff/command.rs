@@ -86,6 +86,8 @@ pub fn run(args: &Args) -> Result<()> {
     let mut photo = photo::read_with(&args.photo, &args.reading.options())?;
     warn(&photo.source.notes);
     progress.say("finding the lights");
+    // The study is of ghosts, those too that another command would lay a veil in place of.
+    look.veil = None;
     photo.frame = look.frame(&photo)?;
     let scene = look.gather(&photo, &photo.frame);
     let name = name(&args.photo);

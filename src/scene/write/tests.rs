@@ -77,6 +77,13 @@ fn scene(chance: &mut Chance) -> SceneFile {
     let own = if preset.is_none() { bells.clone() } else { Vec::new() };
     let goals = [None, Some(Goal::Tolerance(chance.between(1e-9, 0.9))), Some(Goal::Budget(positive(chance)))];
     let some = (chance.between(0.0, 4.0)) as usize;
+    let veil = maybe(chance, |chance| VeilSection {
+        parameters: Parameters { age: Some(60.5), scatter: Some(0.1), ..Parameters::new(Name::Cie) },
+        fov: Some(50.5),
+        projection: one_of(chance, &[None, Some(Projection::Fisheye)]),
+        border: one_of(chance, &[None, Some(Border::None)]),
+        tolerance: maybe(chance, |chance| chance.between(1e-4, 0.5)),
+    });
     SceneFile {
         description: one_of(chance, &["", "two \"lamps\"\n\\ and é", "[look]"]).to_owned(),
         preset,
@@ -107,13 +114,8 @@ fn scene(chance: &mut Chance) -> SceneFile {
             allow_floor: one_of(chance, &[true, false]),
             evaluator: maybe(chance, |chance| one_of(chance, &Evaluator::ALL)),
         },
-        veil: maybe(chance, |chance| VeilSection {
-            parameters: Parameters { age: Some(60.5), scatter: Some(0.1), ..Parameters::new(Name::Cie) },
-            fov: Some(50.5),
-            projection: one_of(chance, &[None, Some(Projection::Fisheye)]),
-            border: one_of(chance, &[None, Some(Border::None)]),
-            tolerance: maybe(chance, |chance| chance.between(1e-4, 0.5)),
-        }),
+        no_veil: veil.is_none() && one_of(chance, &[true, false]),
+        veil,
         lights: maybe(chance, |chance| (0..some).map(|_| light(chance)).collect()),
         ghosts: bells.iter().map(|bell| ghost(chance, bell)).collect(),
         lens_ghosts: own.iter().map(|bell| lens_ghost(chance, bell)).collect(),

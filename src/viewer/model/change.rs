@@ -23,7 +23,7 @@ pub fn work(old: &Look, new: &Look) -> Work {
     // All fields by name: one that is added does not compile until it has a step.
     #[rustfmt::skip]
     let Look {
-        description: _, lens, unit, fov, axis, size, tint, lights, ghosts, find, strength, veil, mix, normalize, accuracy,
+        description: _, lens: _, unit, fov, axis, size, tint, lights, ghosts, find, strength, veil, mix, normalize, accuracy,
     } = new;
     // All that is known of the photo is in the unit.
     let degrees = |look: &Look| (look.fov, look.projection());
@@ -40,7 +40,7 @@ pub fn work(old: &Look, new: &Look) -> Work {
         _ => {}
     }
     let makes = (old.axis, old.size, old.tint) == (*axis, *size, *tint);
-    if old.lens.ghosts() != lens.ghosts() || !makes || old.ghosts != *ghosts {
+    if old.lens_ghosts() != new.lens_ghosts() || !makes || old.ghosts != *ghosts {
         return Work::Ghosts;
     }
     if old.accuracy != *accuracy {

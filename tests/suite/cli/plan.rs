@@ -205,3 +205,38 @@ fn the_drivers_precision_is_measured() {
     assert!(text.contains("1000000") && text.contains("vglare's phases"), "{text}");
     assert!(!place.vglare(&["info"]).succeeded().stdout().contains("phases"), "only where it was asked for");
 }
+
+#[test]
+fn a_veil_is_planned_as_it_is_computed() {
+    let place = Workplace::new();
+    place.photo("in.exr");
+    for options in [
+        &["--veil", "cie", "--fov", "50", "--projection", "planar", "--tolerance", "5e-3"][..],
+        &["--preset", "classic-veil"],
+        &["--preset", "haze-filter", "--unit", "diagonal"],
+    ] {
+        let veil = place.json(&[&["plan", "in.exr", "--json"], options].concat())["veil"].clone();
+        let line = ["apply", "in.exr", "-o", "out.exr", "--report", "report.json", "--force"];
+        place.vglare(&[&line[..], options].concat()).succeeded();
+        let done = place.read_json("report.json")["veil"].clone();
+        assert_eq!(number(&veil, "/predicted"), number(&done, "/error/predicted"));
+        assert_eq!(number(&veil, "/asked"), number(&done, "/error/asked"));
+        for key in ["psf", "projection", "fov", "fov_from", "border", "terms"] {
+            assert_eq!(veil[key], done[key], "{key}");
+        }
+        let summed = veil["lattices"].as_array().unwrap().iter().map(|count| count.as_u64().unwrap()).sum::<u64>();
+        let [direct, dropped, terms] = ["direct", "dropped", "terms"].map(|key| veil[key].as_u64().unwrap());
+        assert_eq!(direct + summed + dropped, terms, "{veil}");
+    }
+    let text = |options: &[&str]| place.vglare(&[&["plan", "in.exr"], options].concat()).succeeded().stdout();
+    let said = text(&["--veil", "cie", "--fov", "50", "--projection", "planar"]);
+    assert!(
+        said.contains("veil     cie, as given: 50° across, planar") && said.contains("of the local veil"),
+        "{said}"
+    );
+    // A picture of twice the size spans the same angles.
+    let twice = place.json(&["plan", "in.exr", "--json", "--size", "192x128", "--veil", "cie", "--fov", "50"]);
+    assert_eq!((number(&twice, "/veil/fov"), &twice["size"]), (50.0, &serde_json::json!([192, 128])));
+    assert!(!text(&[]).contains("veil     "));
+    place.vglare(&["plan", "in.exr", "--veil", "cie"]).failed(2, &["--fov"]);
+}

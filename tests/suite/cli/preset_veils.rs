@@ -1,0 +1,89 @@
+//! Presets that name a veil beside their ghosts, or in their place.
+
+use serde_json::json;
+use vglare::photo::{self, Photo};
+
+use super::Workplace;
+
+/// As high as is needed for pixels that are finer than the eye's core.
+const SIDE: usize = 512;
+
+/// Black but for one pixel.
+fn point() -> Photo {
+    let mut pixels = vec![[0.0, 0.0, 0.0, 1.0]; SIDE * SIDE];
+    pixels[256 * SIDE + 128] = [1e4, 1e4, 1e4, 1.0];
+    Photo::new(SIDE as u32, SIDE as u32, pixels)
+}
+
+#[test]
+fn the_eye_sees_a_glow_around_every_pixel() {
+    let place = Workplace::new();
+    place.write("in.exr", &point());
+    let line = ["apply", "in.exr", "--glare", "veil.exr", "--preset", "eye", "--report", "report.json", "--force"];
+    let said = place.vglare(&line).succeeded().stdout();
+    assert!(said.contains("eye: a veil in place of its ghosts"), "{said}");
+    let report = place.read_json("report.json");
+    assert_eq!((&report["veil"]["psf"], &report["plan"]), (&json!("mixture"), &json!(null)));
+    let veil = photo::read(&place.path("veil.exr")).unwrap();
+    // 40 degrees in 512 pixels; Spencer's photopic function (1995, eq. 5) beyond its core.
+    let pitch = 40.0 / SIDE as f64;
+    for pixels in [2, 3, 5, 10, 30, 100, 300] {
+        let degrees = pitch * pixels as f64;
+        let spencer = 0.478 * 20.91 / (degrees + 0.02f64).powi(3) + 0.138 * 72.37 / (degrees + 0.02).powi(2);
+        let value = f64::from(veil.pixels[256 * SIDE + 128 + pixels][1]);
+        let ratio = value / (1e4 * pitch.to_radians().powi(2) * spencer);
+        assert!((ratio - 1.0).abs() < 0.02, "{degrees}: {ratio}");
+    }
+}
+
+#[test]
+fn a_lens_has_its_veil_unless_somebody_says_otherwise() {
+    let place = Workplace::new();
+    place.photo("in.exr");
+    let run = |options: &str| {
+        let line = ["apply", "in.exr", "-o", "out.exr", "--report", "report.json", "--force", "--no-calibration"];
+        place.vglare(&line.into_iter().chain(options.split_whitespace()).collect::<Vec<_>>()).succeeded();
+        let report = place.read_json("report.json");
+        let ghosts = report["scene"]["ghosts"].as_u64().unwrap();
+        (report["veil"]["psf"].as_str().map(str::to_owned), ghosts > 0, std::fs::read(place.path("out.exr")).unwrap())
+    };
+    place.text("eye.toml", "preset = \"eye\"\n");
+    place.text("ghosts.toml", "preset = \"eye\"\n[veil]\npsf = \"none\"\n");
+    place.text("own.toml", "preset = \"eye\"\n[veil]\npsf = \"gaussian\"\nwidth = 0.1\nscatter = 0.1\n");
+    let told = |options: &str| {
+        let (veil, ghosts, _) = run(options);
+        (veil.unwrap_or_default(), ghosts)
+    };
+    for (options, veil, ghosts) in [
+        ("--preset eye", "mixture", false),
+        ("--preset eye --veil none", "", true),
+        ("--preset eye --veil stiles-holladay --fov 40 --projection planar", "stiles-holladay", false),
+        ("--preset classic-veil", "camera", true),
+        ("--preset haze-filter", "mixture", false),
+        ("--preset classic-prime", "", true),
+        ("--scene eye.toml", "mixture", false),
+        ("--scene ghosts.toml", "", true),
+        ("--scene own.toml", "gaussian", false),
+        ("--scene own.toml --preset classic-veil", "gaussian", true),
+        ("--scene eye.toml --preset zoom", "", true),
+        ("--scene eye.toml --lens none --veil none", "", false),
+    ] {
+        assert_eq!(told(options), (veil.to_owned(), ghosts), "{options}");
+    }
+    // A preset's own file does what the preset does.
+    place.text("mine.toml", &place.vglare(&["presets", "eye"]).succeeded().stdout());
+    assert!(run("--preset eye").2 == run("--lens mine.toml").2);
+    for (file, text, words) in [
+        ("both.toml", "[veil]\npsf = \"none\"\nage = 30\n", "veil.age"),
+        ("scene.toml", "[veil]\npsf = \"cie\"\nfov = 50\nreplaces_ghosts = true\n", "replaces_ghosts"),
+    ] {
+        place.text(file, text);
+        place.vglare(&["apply", "in.exr", "-o", "o.exr", "--scene", file]).failed(1, &[file, words]);
+    }
+    let lens = "[veil]\npsf = \"camera\"\nreplaces_ghosts = 1\n[[lens_ghost]]\nalong = 1\nsize = 1\nshare = 0.1\n";
+    place.text("lens.toml", lens);
+    place.vglare(&["apply", "in.exr", "-o", "o.exr", "--lens", "lens.toml"]).failed(1, &["lens.toml", "true or false"]);
+    let list = place.json(&["presets", "--json"]);
+    let eye = list.as_array().unwrap().iter().find(|entry| entry["name"] == "eye").unwrap();
+    assert!((eye["scatter"].as_f64().unwrap() - 0.3965).abs() < 1e-9 && eye["replaces_ghosts"] == json!(true));
+}
