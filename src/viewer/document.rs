@@ -336,6 +336,7 @@ fn shrink(photo: &Photo, side: u32) -> (Frame, Option<Vec<[f32; 4]>>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::choices::LengthUnit;
     use crate::look::LookLights;
 
     #[test]
@@ -363,6 +364,30 @@ mod tests {
         assert_eq!(document.place(DVec2::ZERO), DVec2::new(4.0, 2.0));
         let at = DVec2::new(-1.25, 7.5);
         assert!((document.place(document.position(at)) - at).length() < 1e-12);
+    }
+
+    #[test]
+    fn another_unit_moves_nothing_and_asks_for_a_search() {
+        // Upright, so that half the height is twice half the shorter side.
+        let mut pixels = vec![[0.1, 0.1, 0.1, 1.0]; 8 * 16];
+        pixels[3 * 8 + 6] = [90.0, 90.0, 90.0, 1.0];
+        pixels[3 * 8 + 7] = [90.0, 90.0, 90.0, 1.0];
+        let mut document = Document::new(Path::new("a.exr"), Photo::new(8, 16, pixels), Look::default());
+        let (before, place) = (document.found.lights[0], document.place(document.found.lights[0].position));
+        document.set_look(Look { unit: LengthUnit::ShortSide, ..Look::default() });
+        let after = document.found.lights[0];
+        assert_eq!((after.position, after.size), (2.0 * before.position, 2.0 * before.size));
+        assert_eq!(after.flux, before.flux.map(|flux| 4.0 * flux));
+        assert_eq!((document.place(after.position), document.wants_search()), (place, true));
+        let (look, frame) = (document.look.clone(), document.whole_frame());
+        let found = look.find(&document.photo, &frame);
+        document.set_found(Search { options: look.find, unit: frame.unit, found });
+        assert!((document.found.lights[0].position - after.position).length() < 1e-12 && !document.wants_search());
+        document.set_look(Look::default());
+        assert!((document.found.lights[0].position - before.position).length() < 1e-12 && document.wants_search());
+        // Nothing says what a degree is here: that changes nothing but what the stage tells.
+        document.set_look(Look { unit: LengthUnit::Degrees, ..Look::default() });
+        assert_eq!((document.frame.unit, document.look.frame(&document.photo).is_err()), (1.0, true));
     }
 
     #[test]

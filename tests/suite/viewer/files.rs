@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use tempfile::TempDir;
+use vglare::choices::LengthUnit;
 use vglare::viewer::Subject;
 use vglare::viewer::model::State;
 
@@ -43,6 +44,34 @@ fn the_window_writes_what_apply_writes_of_the_saved_look() {
     let [window, apply, photo] = ["window.exr", "apply.exr", "lamp.exr"].map(|name| std::fs::read(path(name)).unwrap());
     assert!(window == apply, "the files differ");
     assert!(window != photo, "there is glare in them");
+}
+
+#[test]
+fn the_window_writes_what_apply_writes_in_another_unit() {
+    let (folder, mut session) = in_a_folder();
+    let path = |name: &str| folder.path().join(name);
+    let look = |unit, fov| Look { unit, fov, ..Look::default() };
+    for (unit, fov) in [(LengthUnit::Diagonal, None), (LengthUnit::Degrees, Some(60.0)), (LengthUnit::ShortSide, None)]
+    {
+        // A degree is small, and so is a ghost of a fraction of one.
+        let size = if unit == LengthUnit::Degrees { 20.0 } else { 1.0 };
+        session.app.document_mut().unwrap().set_look(Look { size, ..look(unit, fov) });
+        session.settle();
+        assert_eq!(session.app.problem(), None, "{unit}");
+        session.app.save_look(&path("look.toml"));
+        session.app.export(Subject::Picture, &path("window.exr"));
+        session.wait(|app| !app.is_writing());
+        assert_eq!(session.app.notices(), [] as [String; 0]);
+        apply(&path("lamp.exr"), &path("apply.exr"), &path("look.toml"));
+        let [window, apply] = ["window.exr", "apply.exr"].map(|name| std::fs::read(path(name)).unwrap());
+        assert!(window == apply, "the files differ in {unit}");
+        for name in ["look.toml", "window.exr", "apply.exr"] {
+            std::fs::remove_file(path(name)).unwrap();
+        }
+    }
+    session.app.document_mut().unwrap().set_look(look(LengthUnit::Degrees, None));
+    session.settle();
+    assert!(session.app.problem().is_some_and(|problem| problem.contains("field of view")));
 }
 
 #[test]
