@@ -45,9 +45,9 @@ pub use planned::Planned;
 pub(crate) use planning::request;
 pub use planning::{Planning, plan};
 pub use settings::{bright_light, settings};
-#[cfg(feature = "laboratory")]
-pub(crate) use veil::plan_of;
 pub use veil::{Ledger, NoSources, VeilError, VeilPlanned, Veiled, plan_veil};
+#[cfg(feature = "laboratory")]
+pub(crate) use veil::{Trial, plan_of, trials};
 pub use watch::{Step, Unwatched, Watch};
 
 /// What is wanted. The picture does not depend on what else is.

@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::DVec2;
 
 use crate::look::{Accuracy, Look, LookLens, LookLights};
-use crate::scene::{FindOptions, Goal};
+use crate::scene::{FindOptions, Goal, NO_VEIL};
 use crate::{Error, Result};
 
 /// The `vglare apply` that lays `look` over `photo` and writes `output`, quoted for a POSIX shell: with an option for
@@ -49,12 +49,16 @@ fn options(look: &Look) -> Result<Vec<String>> {
     // All fields by name: one that is added does not compile until it is an option, or said by a file.
     #[rustfmt::skip]
     let Look {
-        description: _, lens, unit, fov, axis, size, tint, lights: _, ghosts: _, find, strength, veil: _, mix, normalize, accuracy,
+        description: _, lens, unit, fov, axis, size, tint, lights: _, ghosts: _, find, strength, veil, mix, normalize, accuracy,
     } = look;
     match lens {
         LookLens::File(path, _) => options.add("--lens", word(path)?),
         LookLens::Preset(preset) if *lens != default.lens => options.add("--preset", &preset.name),
         LookLens::Preset(_) | LookLens::Own(_) => {}
+    }
+    // A lens brings its veil along.
+    if lens.veil().is_some() && veil.is_none() {
+        options.add("--veil", NO_VEIL);
     }
     options.changed("--unit", *unit, default.unit, name);
     options.given("--fov", *fov, |fov| fov.to_string());

@@ -26,7 +26,7 @@ pub use find::{FindOptions, Found, find};
 pub use lens::{Lens, LensVeil, ghosts};
 pub(crate) use referred::referred;
 pub use sections::{AccuracySection, FindSection, Goal, LookSection};
-pub use veil::{VeilFunction, VeilSection, absolute, check_fov};
+pub use veil::{NO_VEIL, VeilFunction, VeilSection, absolute, check_fov};
 pub(crate) use write::checked_toml;
 pub use write::{to_toml, write_scene};
 

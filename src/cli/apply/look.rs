@@ -12,7 +12,8 @@ pub struct LookArgs {
     #[arg(long, value_name = "S", value_parser = not_negative)]
     strength: Option<f64>,
 
-    /// What the size of every ghost is multiplied by, above 0; its light stays as much as it is [default: 1]
+    /// What the size of every ghost, and of a veil on the picture's plane, is multiplied by, above 0; its light stays as much as it
+    /// is [default: 1]
     #[arg(long, value_name = "F", value_parser = positive)]
     size: Option<f64>,
 

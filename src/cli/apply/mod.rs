@@ -247,7 +247,7 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
-    use crate::choices::{Evaluator, Mix, Normalize};
+    use crate::choices::{Evaluator, LengthUnit, Mix, Normalize};
     use crate::look::{Accuracy, LookLens, LookLights};
     use crate::options::command_line;
     use crate::scene::{FindOptions, Goal, Light, presets, write_scene};
@@ -298,7 +298,9 @@ mod tests {
     #[test]
     fn the_windows_command_line_is_parsed_as_the_same_look() {
         let accuracy = Accuracy { goal: Goal::Budget(16.7), ..Accuracy::default() };
-        for look in [Look::default(), changed(), Look { accuracy, ..Look::default() }] {
+        let eye = Look { lens: LookLens::preset("eye").unwrap(), ..Look::default() };
+        let units = Look { unit: LengthUnit::Degrees, fov: Some(40.5), ..Look::default() };
+        for look in [Look::default(), changed(), Look { accuracy, ..Look::default() }, eye, units] {
             assert_eq!(again(&look, None), look);
         }
     }

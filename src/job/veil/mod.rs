@@ -4,6 +4,8 @@ mod account;
 mod measure;
 mod planned;
 mod planning;
+#[cfg(feature = "laboratory")]
+mod trials;
 
 use rayon::prelude::*;
 
@@ -25,6 +27,8 @@ pub use planned::VeilPlanned;
 use planning::at_least;
 #[cfg(feature = "laboratory")]
 pub(crate) use planning::plan_of;
+#[cfg(feature = "laboratory")]
+pub(crate) use trials::{Trial, trials};
 
 /// A veil that is ready to be laid over its photo.
 pub(super) struct Cast {
@@ -49,7 +53,9 @@ pub(super) struct Prepared {
 fn prepared(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame, stages: &mut Stages) -> Result<Prepared> {
     check(look, wanted)?;
     let view = seen(look, wanted, photo)?.map(|view| view.resized(&photo.frame, frame));
-    let geometry = wanted.geometry(frame, view.as_ref()).map_err(told)?;
+    // A look that is made larger is so by its veil, too, where that is on the picture's plane.
+    let enlarged = frame.in_units_of(frame.unit * look.size);
+    let geometry = wanted.geometry(&enlarged, view.as_ref()).map_err(told)?;
     let size = [frame.window.width as usize, frame.window.height as usize];
     let (channels, asked) = stages.time("veil plan", || {
         // What nobody asked for need not be had.

@@ -34,6 +34,15 @@ fn parts(results: &Results, sweep: Sweep) -> &'static str {
     }
 }
 
+pub(super) fn veil(results: &Results) -> String {
+    format!(
+        "The veil of every pixel, summed on the processor at {}, without planning, which is done once for a size. Errors are relative \
+         to the veil at each pixel, and so are the bounds: in the shadows, too. Times are medians of {} rounds in turns.",
+        size(results.swept),
+        results.rounds
+    )
+}
+
 pub(super) fn degree() -> String {
     "How many harmonics are enough: the degree N along x, with M along y in the planned proportion, all N × M modes kept, in \
      the period that is planned for a fine tolerance. The bound assumes that all ghosts are worst at one pixel, so the \

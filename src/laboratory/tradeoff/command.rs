@@ -6,17 +6,20 @@ use std::path::{Path, PathBuf};
 use comfy_table::{CellAlignment, Table, presets};
 
 use super::{Results, Subject, exponent, short};
+use crate::Result;
 use crate::gpu::Device;
 use crate::laboratory::tradeoff;
+use crate::look::Look;
 use crate::options::BackendChoice;
 use crate::options::CalibrationArgs;
 use crate::options::FindArgs;
 use crate::options::ReadArgs;
 use crate::options::SceneArgs;
+use crate::options::VeilArgs;
+use crate::photo::{self, Photo};
 use crate::terminal::progress::Progress;
 use crate::terminal::stderr::warn;
 use crate::terminal::stdout;
-use crate::{Result, photo};
 
 /// Show what accuracy costs for a photo on this machine
 ///
@@ -56,6 +59,9 @@ pub struct Args {
     scene: SceneArgs,
 
     #[command(flatten)]
+    veil: VeilArgs,
+
+    #[command(flatten)]
     find: FindArgs,
 
     #[command(flatten)]
@@ -67,6 +73,7 @@ Examples:
   vglare tradeoff night.exr -o trade --quick
   vglare tradeoff night.exr -o trade --preset vintage-uncoated
   vglare tradeoff night.exr -o trade --scene scene.toml
+  vglare tradeoff night.exr -o trade --veil cie --fov 50
 
 A folder that an earlier run has written is written anew.";
 
@@ -80,18 +87,20 @@ pub fn run(args: &Args) -> Result<()> {
     let progress = Progress::start(args.quiet);
     let inputs: Vec<_> = std::iter::once(args.photo.clone()).chain(args.scene.files()).collect();
     tradeoff::spare(&args.output, &inputs)?;
-    let mut look = args.scene.look()?;
+    let mut look = args.veil.over(args.scene.look()?, None)?;
+    args.scene.unit.check(&look)?;
     look.find = args.find.over(look.find);
     progress.say("reading the photo");
     let mut photo = photo::read_with(&args.photo, &args.reading.options())?;
     warn(&photo.source.notes);
     progress.say("finding the lights");
-    // The study is of ghosts, those too that another command would lay a veil in place of.
-    look.veil = None;
+    let veiled = veiled(&look, &photo)?;
     photo.frame = look.frame(&photo)?;
+    // Ghosts are studied, too, in whose place there is a veil.
+    look.veil = None;
     let scene = look.gather(&photo, &photo.frame);
     let name = name(&args.photo);
-    let subject = Subject::new(&name, &photo, &scene.ghosts)?;
+    let subject = Subject::new(&name, &photo, &scene.ghosts)?.with_veil(&veiled);
     tradeoff::check(&args.output, args.force)?;
     let device = Device::open(args.backend.backends())?;
     let known = args.calibration.known(Some(device.info()));
@@ -102,6 +111,18 @@ pub fn run(args: &Args) -> Result<()> {
     let index = tradeoff::write(&args.output, &results)?;
     drop(progress);
     if args.quiet { Ok(()) } else { stdout::print(|out| summary(out, &results, &index)) }
+}
+
+/// The look, which says what the photo spans: the sweeps' pictures come from no file.
+fn veiled(look: &Look, photo: &Photo) -> Result<Look> {
+    let fov = match look.veil.as_ref().filter(|veil| veil.is_in_degrees()) {
+        Some(veil) => {
+            let view = look.view(photo, &format!("{} is in degrees", veil.psf().name()))?;
+            Some(view.across(&photo.frame, veil.projection()))
+        }
+        None => look.fov,
+    };
+    Ok(Look { fov, ..look.clone() })
 }
 
 /// A file's name without its folder.

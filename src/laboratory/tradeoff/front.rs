@@ -47,10 +47,10 @@ pub struct Recommendation {
     pub invisible: bool,
 }
 
-/// Indices of the tolerance sweep's points that no other beats in both time and error, the fastest first.
-pub(super) fn front(points: &[Point]) -> Vec<usize> {
+/// Indices of a sweep's points that no other of it beats in both time and error, the fastest first.
+pub(super) fn front(points: &[Point], sweep: Sweep) -> Vec<usize> {
     let mut swept: Vec<(usize, f64, f64)> = (points.iter().enumerate())
-        .filter(|(_, point)| point.sweep == Sweep::Tolerance)
+        .filter(|(_, point)| point.sweep == sweep)
         .filter_map(|(index, point)| Some((index, point.ms?, point.measured?)))
         .collect();
     // Of tolerances that one plan does for, the finest says what it is.
@@ -210,7 +210,7 @@ mod tests {
             point(Sweep::Degree, 1e-2, 0.1, 1e-9, 0.5),
             point(Sweep::Tolerance, 1e-3, 3.2, 1e-4, 0.1),
         ];
-        assert_eq!(front(&points), [0, 1, 4]);
+        assert_eq!(front(&points, Sweep::Tolerance), [0, 1, 4]);
     }
 
     #[test]

@@ -22,6 +22,7 @@ use std::rc::Rc;
 use serde::Serialize;
 
 use crate::gpu::{Device, Info};
+use crate::look::Look;
 use crate::photo::Photo;
 use crate::plan::{CostModel, Evaluator, Request};
 use crate::scene::Ghost;
@@ -40,6 +41,8 @@ pub struct Subject<'a> {
     name: &'a str,
     photo: &'a Photo,
     ghosts: &'a [Ghost],
+    /// A look whose veil is studied, too.
+    veil: Option<&'a Look>,
 }
 
 impl<'a> Subject<'a> {
@@ -53,7 +56,12 @@ impl<'a> Subject<'a> {
                 "nothing glares in {name}: --lights or --scene can say what does, --threshold find fainter lights"
             )));
         }
-        Ok(Self { name, photo, ghosts })
+        Ok(Self { name, photo, ghosts, veil: None })
+    }
+
+    /// The same with the veil of a look, which says itself what the photo spans.
+    pub fn with_veil(self, look: &'a Look) -> Self {
+        Self { veil: look.veil.is_some().then_some(look), ..self }
     }
 }
 
@@ -88,6 +96,8 @@ pub struct Results {
     pub points: Vec<Point>,
     /// The points on the front of the tolerance sweep, by their index, the fastest first.
     pub front: Vec<usize>,
+    /// Those on the front of the veil, which has errors relative to itself at each pixel.
+    pub veil_front: Vec<usize>,
     /// Where each evaluator becomes faster than the direct sum.
     pub crossovers: Vec<Crossover>,
     /// The period that the phases' stability was measured in.
@@ -101,13 +111,14 @@ pub struct Results {
 }
 
 /// The sweeps by what they are called while they run, and roughly the part of the whole time that each takes.
-const STAGES: [(&str, f64); 7] = [
+const STAGES: [(&str, f64); 8] = [
     ("tolerances", 0.22),
     ("degrees", 0.12),
     ("lattices", 0.1),
     ("storage", 0.04),
-    ("numbers of ghosts", 0.3),
-    ("sizes", 0.17),
+    ("numbers of ghosts", 0.28),
+    ("sizes", 0.15),
+    ("the veil", 0.04),
     ("pictures", 0.05),
 ];
 
@@ -141,7 +152,8 @@ pub fn measure(
     stage(&mut |watch| sweeps::ghosts(&mut study, watch).map(|found| points.extend(found)))?;
     let tolerance = front::choice(&points).and_then(|point| point.asked).unwrap_or(1e-3);
     stage(&mut |watch| sweeps::size(&mut study, tolerance, watch).map(|found| points.extend(found)))?;
-    let front = front::front(&points);
+    stage(&mut |_| sweeps::veil(&study).map(|found| points.extend(found)))?;
+    let front = front::front(&points, Sweep::Tolerance);
     let mut looks = Looks::default();
     stage(&mut |watch| looks::looks(&mut study, &points, &front, watch).map(|found| looks = found))?;
     let mut recommendation = front::recommend(&points);
@@ -173,6 +185,7 @@ pub fn measure(
             .filter(|&n| n >= 1.0),
         phases: phases::curves(study.photo.frame, period),
         phase_period: period,
+        veil_front: front::front(&points, Sweep::Veil),
         points,
         front,
         looks,

@@ -18,7 +18,7 @@ const FRONT: Colour = [90, 90, 90];
 
 /// The plots that there are points for.
 pub(super) fn plots(results: &Results) -> Vec<Plot> {
-    let all = [tolerance, degree, oversampling, storage, many, size, phases];
+    let all = [tolerance, veil, degree, oversampling, storage, many, size, phases];
     all.iter().filter_map(|plot| plot(results)).collect()
 }
 
@@ -68,6 +68,19 @@ fn tolerance(results: &Results) -> Option<Plot> {
         )
         .with(Series::new("the planner’s choices", chosen).stroke(Stroke::Rings).colour([0, 0, 0]));
     Some(Plot { stem: "error-against-time", caption: say::tolerance(results), chart })
+}
+
+fn veil(results: &Results) -> Option<Plot> {
+    let swept = || of(results, Sweep::Veil);
+    swept().next()?;
+    let title = "The veil: error against time, from a coarse tolerance to a fine one";
+    let front = stairs(pairs(results.veil_front.iter().map(|&i| &results.points[i]), |p| p.ms, |p| p.measured));
+    let chart =
+        logarithmic(title, "sum of three colours on the processor, ms", "error, relative to the veil at each pixel")
+            .with(Series::new("predicted", pairs(swept(), |p| p.ms, |p| p.predicted)).stroke(Stroke::Dashed))
+            .with(Series::new("measured, largest", pairs(swept(), |p| p.ms, |p| p.measured)).stroke(Stroke::Joined))
+            .with(Series::new("the front", front).stroke(Stroke::Dashed).colour(FRONT));
+    Some(Plot { stem: "veil-error-against-time", caption: say::veil(results), chart })
 }
 
 /// A front as stairs: what is had at least until the next better one.

@@ -6,6 +6,7 @@ use super::bench::Timing;
 use super::sample::Quality;
 use crate::Error;
 use crate::frame::Frame;
+use crate::job::Trial;
 use crate::plan::{Evaluator, Plan};
 
 /// What was varied.
@@ -24,6 +25,8 @@ pub enum Sweep {
     Ghosts,
     /// The picture's size.
     Size,
+    /// The tolerance of the veil, relative to the veil at each pixel.
+    Veil,
 }
 
 /// How the spectrum's terms are stored.
@@ -37,7 +40,8 @@ pub enum Storage {
 }
 
 /// A setting with what it costs and how exact it is. What does not apply or was not measured is none. Errors are
-/// relative to the field's largest value of the same colour, times are medians in milliseconds.
+/// relative to the field's largest value of the same colour, those of a veil to the veil at each pixel; times are medians in
+/// milliseconds.
 #[derive(Debug, Clone, Serialize)]
 pub struct Point {
     /// The sweep that it belongs to.
@@ -114,6 +118,19 @@ impl Point {
     /// A request without a plan.
     pub(super) fn refused(sweep: Sweep, frame: Frame, ghosts: usize, asked: Option<f64>, reason: &Error) -> Self {
         Self { refused: Some(reason.reason()), ..Self::empty(sweep, frame, ghosts, asked) }
+    }
+
+    /// A veil at a tolerance: its terms are Gaussians.
+    pub(super) fn of_veil(frame: Frame, asked: f64, trial: &Trial) -> Self {
+        Self {
+            terms: Some(trial.terms),
+            predicted: Some(trial.predicted),
+            measured: Some(trial.measured),
+            ms: Some(trial.times.median()),
+            least_ms: Some(trial.times.min()),
+            most_ms: Some(trial.times.max()),
+            ..Self::empty(Sweep::Veil, frame, 0, Some(asked))
+        }
     }
 
     fn empty(sweep: Sweep, frame: Frame, ghosts: usize, asked: Option<f64>) -> Self {

@@ -132,6 +132,7 @@ pub(super) fn at_most(photo: &Photo, pixels: f64) -> Photo {
         small.pixels().map(|pixel| pixel.0).collect()
     };
     let mut small = Photo::new(sides[0], sides[1], pixels);
+    small.frame = small.frame.in_units_of(photo.frame.unit);
     small.source.primaries = photo.source.primaries;
     small.source.display_referred = photo.source.display_referred;
     small

@@ -15,7 +15,7 @@ use crate::plan::{Evaluator, Plan, Request, plan};
 use crate::problem::Problem;
 use crate::scene::Ghost;
 use crate::series::Bell;
-use crate::{Error, Result};
+use crate::{Error, Result, job};
 
 /// The tolerance of what is swept over ghosts: vglare's default.
 const USUAL: f64 = 1e-3;
@@ -178,11 +178,28 @@ pub(super) fn size(study: &mut Study<'_>, tolerance: f64, watch: Watch<'_>) -> R
     let problems: Vec<_> = frames.iter().map(|&frame| study.problem.on(frame)).collect();
     let mut points = certified(study, Sweep::Size, tolerance, &problems, watch)?;
     for point in &mut points {
-        let problem = study.problem.on(Frame::full(point.width, point.height));
+        let problem = study.problem.on(whole.resized(point.width, point.height));
         point.planner =
             plan(&problem, &study.request(tolerance)).is_ok_and(|plan| Some(plan.evaluator()) == point.evaluator);
     }
     Ok(points)
+}
+
+/// The veil at tolerances from coarse to fine, where there is one.
+///
+/// # Errors
+/// Where the veil cannot be computed; a tolerance that cannot be had is a point without numbers.
+pub(super) fn veil(study: &Study<'_>) -> Result<Vec<Point>> {
+    let Some(look) = study.subject.veil else { return Ok(Vec::new()) };
+    let tolerances: &[f64] =
+        if study.quick { &[1e-1, 1e-2, 1e-3] } else { &[1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5] };
+    let frame = study.frame();
+    let trials = job::trials(look, &study.photo, &frame, tolerances, study.bench.rounds)?;
+    let point = |(&asked, trial): (&f64, Result<job::Trial>)| match trial {
+        Ok(trial) => Point::of_veil(frame, asked, &trial),
+        Err(reason) => Point::refused(Sweep::Veil, frame, 0, Some(asked), &reason),
+    };
+    Ok(tolerances.iter().zip(trials).map(point).collect())
 }
 
 /// Problems by every evaluator, timed in turns and held against the direct sum at a certificate's pixels.

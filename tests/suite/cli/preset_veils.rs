@@ -1,6 +1,7 @@
 //! Presets that name a veil beside their ghosts, or in their place.
 
 use serde_json::json;
+use vglare::frame::{Frame, Window};
 use vglare::photo::{self, Photo};
 
 use super::Workplace;
@@ -86,4 +87,54 @@ fn a_lens_has_its_veil_unless_somebody_says_otherwise() {
     let list = place.json(&["presets", "--json"]);
     let eye = list.as_array().unwrap().iter().find(|entry| entry["name"] == "eye").unwrap();
     assert!((eye["scatter"].as_f64().unwrap() - 0.3965).abs() < 1e-9 && eye["replaces_ghosts"] == json!(true));
+}
+
+#[test]
+fn a_window_of_the_picture_has_the_veil_of_what_is_stored() {
+    let place = Workplace::new();
+    let (width, height, window) = (96, 64, Window { x: 10, y: -4, width: 60, height: 40 });
+    let light = |at: usize| if at.is_multiple_of(37) { 5.0 } else { 0.1 };
+    let stored = Photo {
+        frame: Frame::full(width, height).with_window(window),
+        pixels: (0..window.pixels()).map(|at| [light(at), light(at), 0.2, 1.0]).collect(),
+        ..Photo::new(1, 1, vec![[0.0; 4]])
+    };
+    // The same alone, whose unit is another.
+    let alone = Photo::new(window.width, window.height, stored.pixels.clone());
+    place.write("window.exr", &stored);
+    place.write("alone.exr", &alone);
+    let veil = |name: &str, width: f64| {
+        let width = width.to_string();
+        let line = [
+            "apply",
+            name,
+            "--glare",
+            "veil.exr",
+            "--lens",
+            "none",
+            "--veil",
+            "gaussian",
+            "--scatter",
+            "0.1",
+            "--force",
+        ];
+        place.vglare(&[&line[..], &["--width", &width, "--tolerance", "1e-3"]].concat()).succeeded();
+        photo::read(&place.path("veil.exr")).unwrap().pixels
+    };
+    let (part, whole) =
+        (veil("window.exr", 0.1), veil("alone.exr", 0.1 * f64::from(height) / f64::from(window.height)));
+    assert!(part.iter().zip(&whole).all(|(a, b)| (0..3).all(|k| (a[k] / b[k] - 1.0).abs() < 2e-3)));
+}
+
+#[test]
+fn a_look_that_is_larger_has_a_larger_veil() {
+    let place = Workplace::new();
+    place.photo("in.exr");
+    let veil = |options: &str| {
+        let line = "apply in.exr --glare veil.exr --lens none --force --veil gaussian --scatter 0.1 --tolerance 1e-3";
+        place.vglare(&line.split(' ').chain(options.split(' ')).collect::<Vec<_>>()).succeeded();
+        photo::read(&place.path("veil.exr")).unwrap().pixels
+    };
+    let (sized, wide) = (veil("--width 0.1 --size 2"), veil("--width 0.2"));
+    assert!(sized.iter().zip(&wide).all(|(a, b)| (0..3).all(|k| (a[k] / b[k] - 1.0).abs() < 2e-3)));
 }

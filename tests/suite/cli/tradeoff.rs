@@ -70,7 +70,15 @@ fn the_page_names_files_that_are_there_and_nothing_from_elsewhere() {
     place.photo("night.exr");
     place.text("lamp.toml", "[[ghost]]\ncenter = [0.2, 0.1]\nsize = 0.4\nradiance = [2.0, 1.5, 1.0]\n");
     let scene = ["tradeoff", "night.exr", "--quick", "-q", "--scene", "lamp.toml", "-o", "trade"];
-    assert_eq!(place.vglare(&scene).succeeded().stdout(), "");
+    let veil = ["--veil", "gaussian", "--width", "0.1", "--scatter", "0.1", "--unit", "diagonal"];
+    assert_eq!(place.vglare(&[&scene[..], &veil].concat()).succeeded().stdout(), "");
+    let veil = rows(&place, "trade/results.csv").into_iter().filter(|row| row["sweep"] == "veil").collect::<Vec<_>>();
+    assert_eq!(veil.iter().map(|row| number(row, "asked")).collect::<Vec<_>>(), [1e-1, 1e-2, 1e-3]);
+    for row in &veil {
+        let [measured, predicted, asked] = ["measured", "predicted", "asked"].map(|column| number(row, column));
+        assert!(measured > 0.0 && measured <= predicted && predicted <= asked, "{row:?}");
+        assert!(number(row, "least_ms") <= number(row, "ms") && number(row, "ms") <= number(row, "most_ms"), "{row:?}");
+    }
     let page = std::fs::read_to_string(place.path("trade/index.html")).unwrap();
     assert!(!page.contains("http") && page.contains("prefers-color-scheme"), "self-contained, light and dark");
     let named =

@@ -171,6 +171,7 @@ fn the_file_says_what_the_picture_spans() {
         ("tiff-exif-focal-plane.tif", wide, "focal length 28 mm"),
         ("exr-field-of-view.exr", wide, "the file's own field: 65.5° across"),
         ("exr-sensor.exr", wide, "focal length 28 mm"),
+        ("exr-exif-28-mm.exr", wide, "35 mm equivalent 28 mm"),
         ("hdr-exposure-and-view.hdr", 45.0, "the file's own field: 45° across"),
     ] {
         let path = input(name);

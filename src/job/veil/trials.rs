@@ -1,0 +1,70 @@
+//! A veil at several tolerances, for studies: how exact it is, and how long it takes.
+
+use std::time::Instant;
+
+use super::{Prepared, Stages, brightest, computed, failed, looked_at, measured, predicted, prepared, told};
+use crate::certificate::Verify;
+use crate::frame::Frame;
+use crate::look::{Look, Veil as Wanted};
+use crate::measure::{Rounds, Samples, in_turns};
+use crate::photo::Photo;
+use crate::scene::VeilSection;
+use crate::{Error, Result, veil};
+
+/// What came of one tolerance.
+pub(crate) struct Trial {
+    /// Gaussians of the mixture.
+    pub terms: usize,
+    /// The plan's bound, relative to the local veil.
+    pub predicted: f64,
+    /// The largest error that was found, relative to it.
+    pub measured: f64,
+    /// Milliseconds of the sum, without planning.
+    pub times: Samples,
+}
+
+/// Tries the veil of a look on a photo, on its frame as [`Look::frame`] gives it, at each of these tolerances, in turns; an error
+/// of its own for each that cannot be had.
+///
+/// # Errors
+/// Those of a look without a veil, or with one that no tolerance makes possible.
+pub(crate) fn trials(
+    look: &Look,
+    photo: &Photo,
+    frame: &Frame,
+    tolerances: &[f64],
+    rounds: Rounds,
+) -> Result<Vec<Result<Trial>>> {
+    let Some(wanted) = &look.veil else { return Ok(tolerances.iter().map(|_| Err(none())).collect()) };
+    let plan = |&tolerance: &f64| {
+        let section = VeilSection { tolerance: Some(tolerance), ..wanted.section() };
+        let held = Wanted::new(&section, wanted.adds).map_err(told)?;
+        prepared(look, &held, photo, frame, &mut Stages::default())
+    };
+    let plans: Vec<Result<Prepared>> = tolerances.iter().map(plan).collect();
+    let size = [frame.window.width as usize, frame.window.height as usize];
+    let sources = veil::Photo::rgba(photo.pixels.as_flattened(), size).map_err(failed)?;
+    let had: Vec<&Prepared> = plans.iter().flatten().collect();
+    let mut times = in_turns(rounds, had.len(), |index| {
+        let started = Instant::now();
+        computed(&had[index].channels, &sources)?;
+        Ok(started.elapsed().as_secs_f64() * 1e3)
+    })?
+    .into_iter();
+    let pixels = looked_at(size, brightest(&sources), Verify::Sample);
+    let mut trial = |plan: Prepared| {
+        let Prepared { geometry, channels, .. } = plan;
+        let veil = computed(&channels, &sources)?;
+        Ok(Trial {
+            terms: channels.iter().map(|(_, kernel)| kernel.mixture().terms.len()).max().unwrap_or(0),
+            predicted: predicted(&channels).bound,
+            measured: measured(&channels, &sources, &geometry, wanted.border, &veil, &pixels)?,
+            times: times.next().unwrap_or_default().into_iter().collect(),
+        })
+    };
+    Ok(plans.into_iter().map(|plan| plan.and_then(&mut trial)).collect())
+}
+
+fn none() -> Error {
+    Error::Usage("there is no veil".into())
+}
