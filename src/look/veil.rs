@@ -102,7 +102,8 @@ impl Veil {
                 }
                 _ => fault("projection", format!("{name} is a function on the picture's plane, not in degrees")),
             },
-            Unit::Pixels => fault("psf", format!("{name} is no radial function, and vglare computes radial ones")),
+            Unit::Pixels if projection == Projection::Planar => Ok(Geometry::Planar { pitch: 1.0, solid_angle: 1.0 }),
+            Unit::Pixels => fault("projection", format!("{name} is a picture in the photo's plane, not in degrees")),
             Unit::Degrees => {
                 let Some(&View { focal, .. }) = view else {
                     return fault(

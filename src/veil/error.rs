@@ -70,4 +70,20 @@ pub enum Error {
         /// How far small kernels reach, in pixels.
         most: usize,
     },
+
+    /// A transform that is too large for the memory.
+    #[error(
+        "the veil of this photo takes {:.1} GiB of memory, and {:.1} GiB are the most that are used; give a smaller photo, no \
+         border or a smaller kernel", gib(*needed), gib(*most)
+    )]
+    Memory {
+        /// Bytes that would be needed.
+        needed: usize,
+        /// Bytes that are taken at most.
+        most: usize,
+    },
+}
+
+fn gib(bytes: usize) -> f64 {
+    bytes as f64 / f64::from(1 << 30)
 }

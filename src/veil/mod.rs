@@ -12,6 +12,10 @@
 //! bring the sums back to the pixels ([`sweep`]). Narrow Gaussians are convolved on the pixels, and a small kernel
 //! that is not separable adds what is missing near a source, which makes near offsets exact.
 //!
+//! What no mixture of positive Gaussians follows, and any tolerance down to 10⁻⁷, is convolved by a transform in 64 bits; so is what
+//! costs less that way (`transform`). [`Plan::for_profile`] takes functions without a mixture, [`Plan::for_picture`] a
+//! [`Picture`]: both are for planes.
+//!
 //! # Accuracy
 //!
 //! It is relative to the *local* veil. As no source is negative, |realised − wanted| ≤ ε · wanted at every offset makes the
@@ -19,18 +23,21 @@
 //! plan encloses both ([`plan`]). Sums are of positive terms, so that 32-bit floats round relative to the local veil as
 //! well. Two things are not: the pixel's own light, which the lattices cannot leave out and which is subtracted; and a veil
 //! darker than [`FLOOR`] of its channel's largest, which counts as that. Where the former could harm, in the rare lonely
-//! pixel far brighter than its own veil, the channel is summed once more in 64 bits.
+//! pixel far brighter than its own veil, the channel is summed once more in 64 bits. A transform rounds relative to the whole photo:
+//! [`Veil::certified`] says what that comes to in the veil of one.
 
 mod error;
 mod evaluate;
 mod geometry;
 mod kernel;
 mod photo;
+mod picture;
 pub mod plan;
 pub mod reference;
 mod simd;
 mod sphere;
 pub mod sweep;
+mod transform;
 
 #[cfg(test)]
 mod tests;
@@ -40,7 +47,9 @@ pub use evaluate::Veil;
 pub use geometry::{Border, Geometry};
 pub use kernel::{Gaussian, Kernel, Mixture};
 pub use photo::{BadSources, Photo};
-pub use plan::{Plan, Predicted};
+pub use picture::{Energy, Picture};
+pub use plan::{Method, Plan, Predicted};
+pub use transform::MOST_MEMORY;
 
 /// A veil below this share of its channel's largest is held to the tolerance of that share, and not of itself.
 pub const FLOOR: f64 = 1e-9;

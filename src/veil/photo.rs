@@ -153,6 +153,27 @@ impl<'a> Photo<'a> {
         BadSources::new(&surveys)
     }
 
+    /// A channel's light along a row, unscaled, and along what a border adds beyond its ends: the first of `into`, which holds the row
+    /// at least, is the column −`before`.
+    pub(super) fn lights(&self, channel: usize, y: usize, border: Border, before: usize, into: &mut [f64]) {
+        let width = self.size[0];
+        let (left, rest) = into.split_at_mut(before);
+        let (middle, right) = rest.split_at_mut(width.min(rest.len()));
+        match self.row(y) {
+            Row::Four(row) => row.iter().zip(middle).for_each(|(pixel, into)| *into = light(pixel[channel])),
+            Row::Three(row) => row.iter().zip(middle).for_each(|(pixel, into)| *into = light(pixel[channel])),
+            Row::Planes(rows) => rows[channel].iter().zip(middle).for_each(|([value], into)| *into = light(*value)),
+        }
+        // Not beyond one picture.
+        let pictures = -(width as isize)..2 * width as isize;
+        let beyond = |column: isize| {
+            let inside = border.source(column, width).filter(|_| pictures.contains(&column));
+            inside.map_or(0.0, |x| light(self.value(channel, x, y)))
+        };
+        left.iter_mut().zip(-(before as isize)..).for_each(|(into, column)| *into = beyond(column));
+        right.iter_mut().zip(width as isize..).for_each(|(into, column)| *into = beyond(column));
+    }
+
     /// What is no light.
     pub(super) fn bad(&self) -> BadSources {
         BadSources::new(&self.survey(Arch::new()))
@@ -277,6 +298,12 @@ impl Survey {
     fn exponent(&self) -> i32 {
         if self.brightest > 0.0 { TOP - f64::from(self.brightest).log2().ceil() as i32 } else { 0 }
     }
+}
+
+/// What a value sends.
+pub(super) fn light(value: f32) -> f64 {
+    // False for NaN as well.
+    if value > 0.0 && value < f32::INFINITY { f64::from(value) } else { 0.0 }
 }
 
 /// 2^`exponent`, exactly.

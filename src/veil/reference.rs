@@ -4,7 +4,8 @@ use rayon::prelude::*;
 
 use super::geometry::{Border, Geometry};
 use super::kernel::Kernel;
-use super::photo::Photo;
+use super::photo::{Photo, light};
+use super::picture::Picture;
 use super::sphere::{Camera, Point, angle};
 
 /// A rectangle of pixels: its first column and row, and how many of each.
@@ -41,6 +42,35 @@ pub fn at(photo: &Photo, geometry: &Geometry, kernel: &Kernel, border: Border, p
         }
         _ => Vec::new(),
     }
+}
+
+/// The veil of a picture as the kernel, at pixels of the photo, each a column and a row: red, green and blue of each.
+pub fn of_picture(photo: &Photo, picture: &Picture, border: Border, pixels: &[[usize; 2]]) -> Vec<[f64; 3]> {
+    let [width, height] = photo.size();
+    let margin = if border == Border::None { [0, 0] } else { [width, height] };
+    let sources = sources(photo, border, margin);
+    let seen = [width + 2 * margin[0], height + 2 * margin[1]];
+    // Sources from which a target is within the picture.
+    let from = |side: usize, at: usize| {
+        let [centre, length] = [picture.centre()[side], picture.size()[side]];
+        let at = at + margin[side];
+        (at + centre + 1).saturating_sub(length)..(at + centre + 1).min(seen[side])
+    };
+    let at = |[x, y]: [usize; 2]| {
+        let mut sum = [0.0; 3];
+        for row in from(1, y) {
+            for column in from(0, x) {
+                let offset =
+                    [(x + margin[0], column), (y + margin[1], row)].map(|(to, from)| to as isize - from as isize);
+                if offset != [0, 0] {
+                    let (source, value) = (sources[row * seen[0] + column], picture.at(offset));
+                    (0..3).for_each(|channel| sum[channel] += source[channel] * value[channel]);
+                }
+            }
+        }
+        sum
+    };
+    pixels.par_iter().copied().map(at).collect()
 }
 
 fn planar(photo: &Photo, value: impl Fn(f64) -> f64 + Sync, border: Border, pixels: &[[usize; 2]]) -> Vec<[f64; 3]> {
@@ -104,9 +134,4 @@ fn sources(photo: &Photo, border: Border, margin: [usize; 2]) -> Vec<[f64; 3]> {
         }
     }
     sources
-}
-
-/// What a value sends.
-fn light(value: f32) -> f64 {
-    if value > 0.0 && value.is_finite() { f64::from(value) } else { 0.0 }
 }

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{failed, light};
+use super::{Definition, failed, light};
 use crate::Result;
 use crate::certificate::Verify;
 use crate::chance::Chance;
@@ -11,6 +11,8 @@ use crate::veil::{self, Geometry, Kernel, Plan};
 
 /// Products that measuring the error may cost: at some pixels, or where every one is asked for, which large photos have too many of.
 const EFFORT: [f64; 2] = [5e6, 2e10];
+/// Tolerances from which on a kernel may be looked up in a table.
+const LOOKED_UP: f64 = 1e-4;
 /// Pixels that are measured at least.
 const FEWEST: usize = 6;
 
@@ -43,21 +45,29 @@ pub(super) fn brightest(sources: &veil::Photo<'_>) -> usize {
 
 /// The largest error that is found at these pixels, relative to the veil there.
 pub(super) fn measured(
-    channels: &[(Plan, Kernel)],
+    channels: &[(Plan, Definition)],
     sources: &veil::Photo<'_>,
     geometry: &Geometry,
     border: Border,
     computed: &veil::Veil,
     pixels: &[[usize; 2]],
+    tolerance: f64,
 ) -> Result<f64> {
     let width = sources.size()[0];
     let largest = |plane: &Vec<f32>| f64::from(plane.par_iter().copied().reduce(|| 0.0, f32::max));
     let floors = computed.planes.each_ref().map(|plane| veil::FLOOR * largest(plane));
     let mut worst = 0.0f64;
     let angles = geometry.angles(sources.size(), border);
-    for (index, (_, kernel)) in channels.iter().enumerate() {
-        let kernel = looked_up(kernel, angles)?;
-        let truth = veil::reference::at(sources, geometry, &kernel, border, pixels);
+    for (index, (_, definition)) in channels.iter().enumerate() {
+        let truth = match definition {
+            Definition::Radial(kernel) if tolerance < LOOKED_UP => {
+                veil::reference::at(sources, geometry, kernel, border, pixels)
+            }
+            Definition::Radial(kernel) => {
+                veil::reference::at(sources, geometry, &looked_up(kernel, angles)?, border, pixels)
+            }
+            Definition::Picture(picture) => veil::reference::of_picture(sources, picture, border, pixels),
+        };
         let mine: &[usize] = if channels.len() == 1 { &[0, 1, 2] } else { &[index] };
         for (&[x, y], truth) in pixels.iter().zip(truth) {
             for &channel in mine {

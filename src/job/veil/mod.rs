@@ -17,16 +17,16 @@ use crate::look::{Look, Veil as Wanted};
 use crate::photo::{Alpha, Photo, View};
 use crate::psf::Fault;
 use crate::scene::Emission;
-use crate::veil::{self, Geometry, Kernel, Plan, Predicted};
+use crate::veil::{self, Geometry, Plan, Predicted};
 use crate::{Error, Result};
 
 pub use account::{Ledger, NoSources, VeilError, Veiled};
 use account::{Loss, ledger, no_sources};
 use measure::{brightest, looked_at, measured};
 pub use planned::VeilPlanned;
-use planning::at_least;
 #[cfg(feature = "laboratory")]
 pub(crate) use planning::plan_of;
+use planning::{Definition, at_least};
 #[cfg(feature = "laboratory")]
 pub(crate) use trials::{Trial, trials};
 
@@ -44,7 +44,7 @@ pub(super) struct Prepared {
     geometry: Geometry,
     size: [usize; 2],
     /// A plan and a kernel for all channels, or one for each.
-    channels: Vec<(Plan, Kernel)>,
+    channels: Vec<(Plan, Definition)>,
     /// The tolerance that it is held to.
     asked: f64,
 }
@@ -96,14 +96,16 @@ pub(super) fn cast(
     let mut computed = stages.time("veil", || computed(&channels, &sources))?;
     let measured = stages.time("veil certify", || {
         let pixels = looked_at(size, brightest(&sources), verify);
-        measured(&channels, &sources, &geometry, wanted.border, &computed, &pixels).map(|error| (error, pixels.len()))
+        measured(&channels, &sources, &geometry, wanted.border, &computed, &pixels, asked)
+            .map(|error| (error, pixels.len()))
     })?;
     let strength = look.strength;
     let loses = Loss::new(wanted, geometry, size, strength);
     let scale = strength as f32;
     computed.planes.par_iter_mut().for_each(|plane| plane.iter_mut().for_each(|value| *value *= scale));
-    let predicted = predicted(&channels);
-    let veil::Veil { planes, bad, dark, .. } = computed;
+    let veil::Veil { planes, bad, dark, certified, .. } = computed;
+    // Of a transform the plan knows no more than what it is held to.
+    let predicted = certified.into_iter().fold(0.0, f64::max);
     let veiled = Veiled {
         parameters: wanted.section().parameters,
         projection: wanted.projection(),
@@ -113,9 +115,9 @@ pub(super) fn cast(
         strength,
         scattered: wanted.psf().energies(),
         centre: wanted.psf().centres(),
-        terms: channels.iter().map(|(_, kernel)| kernel.mixture().terms.len()).max().unwrap_or(0),
+        terms: terms(&channels),
         notes: raised(asked, wanted.tolerance()).into_iter().chain(coarse(&loses, size)).collect(),
-        error: VeilError { asked, predicted: predicted.bound, measured: measured.0, pixels: measured.1 },
+        error: VeilError { asked, predicted, measured: measured.0, pixels: measured.1 },
         ledger: ledger(&sources, &planes, &loses),
         dark,
         no_sources: no_sources(bad),
@@ -190,18 +192,24 @@ fn weighed(photo: &Photo) -> Option<Vec<[f32; 4]>> {
 }
 
 /// The veil, each channel by its kernel.
-fn computed(channels: &[(Plan, Kernel)], sources: &veil::Photo<'_>) -> Result<veil::Veil> {
+fn computed(channels: &[(Plan, Definition)], sources: &veil::Photo<'_>) -> Result<veil::Veil> {
     let mut all =
         channels.iter().map(|(plan, _)| plan.evaluate(sources).map_err(failed)).collect::<Result<Vec<_>>>()?;
     let mut veil = all.remove(0);
     for (channel, mut other) in (1..).zip(all) {
         veil.planes[channel] = std::mem::take(&mut other.planes[channel]);
         (veil.dark[channel], veil.lonely[channel]) = (other.dark[channel], other.lonely[channel]);
+        veil.certified[channel] = other.certified[channel];
     }
     Ok(veil)
 }
 
-fn predicted(channels: &[(Plan, Kernel)]) -> Predicted {
+/// Gaussians of the mixture.
+fn terms(channels: &[(Plan, Definition)]) -> usize {
+    channels.iter().map(|(_, definition)| definition.terms()).max().unwrap_or(0)
+}
+
+fn predicted(channels: &[(Plan, Definition)]) -> Predicted {
     let worst = channels.iter().map(|(plan, _)| plan.predicted()).max_by(|a, b| a.bound.total_cmp(&b.bound));
     worst.expect("there is a kernel").clone()
 }

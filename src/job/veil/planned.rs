@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Prepared, predicted, raised};
+use super::{Prepared, predicted, raised, terms};
 use crate::choices::{Border, Projection};
 use crate::frame::Frame;
 use crate::look::{Look, Veil as Wanted};
@@ -58,7 +58,7 @@ impl VeilPlanned {
             fov_from: view.map(|view| view.from),
             border: wanted.border,
             scattered: wanted.psf().energies().map(|energy| look.strength * energy),
-            terms: channels.iter().map(|(_, kernel)| kernel.mixture().terms.len()).max().unwrap_or(0),
+            terms: terms(&channels),
             asked,
             predicted: bound,
             rounding,

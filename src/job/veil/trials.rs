@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::{Prepared, Stages, brightest, computed, failed, looked_at, measured, predicted, prepared, told};
+use super::{Prepared, Stages, brightest, computed, failed, looked_at, measured, predicted, prepared, terms, told};
 use crate::certificate::Verify;
 use crate::frame::Frame;
 use crate::look::{Look, Veil as Wanted};
@@ -53,12 +53,12 @@ pub(crate) fn trials(
     .into_iter();
     let pixels = looked_at(size, brightest(&sources), Verify::Sample);
     let mut trial = |plan: Prepared| {
-        let Prepared { geometry, channels, .. } = plan;
+        let Prepared { geometry, channels, asked, .. } = plan;
         let veil = computed(&channels, &sources)?;
         Ok(Trial {
-            terms: channels.iter().map(|(_, kernel)| kernel.mixture().terms.len()).max().unwrap_or(0),
+            terms: terms(&channels),
             predicted: predicted(&channels).bound,
-            measured: measured(&channels, &sources, &geometry, wanted.border, &veil, &pixels)?,
+            measured: measured(&channels, &sources, &geometry, wanted.border, &veil, &pixels, asked)?,
             times: times.next().unwrap_or_default().into_iter().collect(),
         })
     };

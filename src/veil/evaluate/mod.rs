@@ -14,7 +14,7 @@ use super::error::Error;
 use super::geometry::{Border, Geometry};
 use super::kernel::Kernel;
 use super::photo::{BadSources, Photo, Scale, Sources};
-use super::plan::{Layers, Near, OWN_SHARE, PERIOD, Placed, Plan, Planar, Way};
+use super::plan::{DIRECT, Layers, Near, OWN_SHARE, PERIOD, Placed, Plan, Planar, Way};
 use super::reference::{self, Window};
 use super::simd::{BLOCK, Plane, Real};
 use super::sweep::{GROUP, Pyramid, Separable};
@@ -32,8 +32,12 @@ pub struct Veil {
     pub bad: BadSources,
     /// Pixels whose veil is below [`FLOOR`] of their channel's largest.
     pub dark: [usize; 3],
-    /// Pixels that are so much brighter than their own veil that it had to be summed without their light.
+    /// Pixels that are so much brighter than their own veil that it had to be summed without their light; by a transform, those whose
+    /// veil is so dark that it had to be summed by the definition.
     pub lonely: [usize; 3],
+    /// The bound of the error relative to the local veil that holds for this photo: the plan's but for a transform, whose error
+    /// depends on the photo and may be above the tolerance.
+    pub certified: [f64; 3],
 }
 
 impl Plan {
@@ -45,10 +49,12 @@ impl Plan {
         if photo.size() != self.size() {
             return Err(Error::OtherSize { planned: self.size(), found: photo.size() });
         }
+        let bound = self.predicted().bound;
         Ok(match &self.way {
-            Way::Plane(planar) => planar.evaluate(photo),
-            Way::Sphere(spherical) => spherical.evaluate(photo),
+            Way::Plane(planar) => Veil { certified: [bound; 3], ..planar.evaluate(photo) },
+            Way::Sphere(spherical) => Veil { certified: [bound; 3], ..spherical.evaluate(photo) },
             Way::Direct(geometry, kernel) => direct(photo, geometry, kernel),
+            Way::Transform(transform) => transform.evaluate(photo),
         })
     }
 }
@@ -61,7 +67,7 @@ fn direct(photo: &Photo, geometry: &Geometry, kernel: &Kernel) -> Veil {
         let floor = FLOOR * f64::from(plane.iter().copied().fold(0.0, f32::max));
         plane.iter().filter(|value| f64::from(**value) < floor).count()
     });
-    Veil { planes, bad: photo.bad(), dark, lonely: [0; 3] }
+    Veil { planes, bad: photo.bad(), dark, lonely: [0; 3], certified: [DIRECT; 3] }
 }
 
 /// What an evaluation on a plane needs besides its result.
@@ -75,7 +81,7 @@ impl Planar {
         let mut workspace = self.pool.take(|| self.workspace());
         let Workspace { sources, pyramid } = &mut workspace;
         let bad = photo.sources(self.border, self.margin, sources);
-        let mut veil = Veil { planes: Default::default(), bad, dark: [0; 3], lonely: [0; 3] };
+        let mut veil = Veil { planes: Default::default(), bad, dark: [0; 3], lonely: [0; 3], certified: [0.0; 3] };
         let layers = Ready::new(&self.layers);
         for (channel, sources) in sources.iter_mut().enumerate() {
             let (mut plane, rows) = self.sum(&layers, sources, pyramid);

@@ -19,7 +19,13 @@ impl Spherical {
         let mut sums = self.sphere.sum(&sources);
         let lonely = [0, 1, 2].map(|channel| self.lonely(&sources[channel], &sums[channel], size));
         self.mend(&mut sources, &lonely, &mut sums);
-        let mut veil = Veil { planes: Default::default(), bad, dark: [0; 3], lonely: lonely.each_ref().map(Vec::len) };
+        let mut veil = Veil {
+            planes: Default::default(),
+            bad,
+            dark: [0; 3],
+            lonely: lonely.each_ref().map(Vec::len),
+            certified: [0.0; 3],
+        };
         for (channel, (sum, sources)) in sums.iter().zip(&sources).enumerate() {
             let floor = FLOOR * largest(sum);
             let rows = (0..size[1])

@@ -19,6 +19,8 @@ mod near;
 mod own;
 mod samples;
 
+use std::sync::Arc;
+
 pub(super) use lattice::{Lattice, kernel, weights};
 pub(super) use near::Near;
 pub(super) use own::{Own, PERIOD};
@@ -27,7 +29,9 @@ use super::error::Error;
 use super::evaluate::{Pool, Workspace};
 use super::geometry::{Border, Geometry};
 use super::kernel::{Gaussian, Kernel};
+use super::picture::Picture;
 use super::sphere::{self, Camera, Sphere, Task, angle};
+use super::transform::{self, Choice, Transform, pyramid_nanoseconds};
 use choose::{Chooser, Chosen};
 use samples::Samples;
 
@@ -41,7 +45,7 @@ const TINY: usize = 1 << 8;
 const SMALL: usize = 1 << 13;
 
 /// The error of a direct sum: of its rounding to 32 bits.
-const DIRECT: f64 = 1e-7;
+pub(super) const DIRECT: f64 = 1e-7;
 
 /// The share of the tolerance that is kept for what remains of a pixel's own light.
 pub(super) const OWN_SHARE: f64 = 0.05;
@@ -77,11 +81,12 @@ pub(super) struct Layers {
 /// What a plan promises and costs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Predicted {
-    /// Bound of the error relative to the local veil, rounding included; at most the tolerance.
+    /// Bound of the error relative to the local veil, rounding included; at most the tolerance. Of a transform it is that: the plan
+    /// does not know the photo, and [`super::Veil::certified`] says what holds for it.
     pub bound: f64,
-    /// The part of it that is rounding.
+    /// The part of it that is rounding; of a transform, that of a photo that is even.
     pub rounding: f64,
-    /// Multiply-adds for each pixel of one channel.
+    /// Multiply-adds for each pixel of one channel; of a transform, as many as take its time.
     pub operations: f64,
     /// Gaussians that are summed on the pixels.
     pub direct: usize,
@@ -108,6 +113,25 @@ pub(super) enum Way {
     Sphere(Box<Spherical>),
     /// Every source at every pixel, for pictures so small that it is quick.
     Direct(Geometry, Kernel),
+    /// On a plane, by the transform of photo and kernel.
+    Transform(Arc<Transform>),
+}
+
+/// How a veil is summed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Method {
+    /// Gaussians on lattices and on the pixels of a plane.
+    Pyramid,
+    /// The same on the sphere.
+    Sphere,
+    /// Every source at every pixel.
+    Sum,
+    /// The transform of the photo times that of the kernel.
+    Transform {
+        /// Columns and rows, with the padding.
+        points: [usize; 2],
+    },
 }
 
 /// On a plane.
@@ -150,19 +174,83 @@ impl Plan {
         tolerance: f64,
     ) -> Result<Self, Error> {
         geometry.check(size, border)?;
-        let [width, height] = size;
-        if width == 0 || height == 0 || width.max(height) > LONGEST_SIDE {
-            return Err(Error::Size { width, height, most: LONGEST_SIDE });
-        }
-        if !(tolerance > 0.0 && tolerance < 1.0) {
-            return Err(Error::Tolerance(tolerance));
-        }
+        check_picture(size, tolerance)?;
         match (*geometry, geometry.camera(size)) {
             (Geometry::Planar { pitch, solid_angle }, _) => {
-                Self::planar([pitch, solid_angle], kernel, size, border, tolerance)
+                Self::on_plane([pitch, solid_angle], kernel, transform::Task { size, border, tolerance })
             }
             (_, Some(camera)) => Self::spherical(geometry, camera, kernel, tolerance),
             _ => Err(Error::Geometry("this geometry has no camera".into())),
+        }
+    }
+
+    /// The veil on a plane of any function of the distance or angle: it may be negative, steep, or wide. Where it is negative, the
+    /// veil may be; the error is relative to its magnitude.
+    ///
+    /// # Errors
+    /// A size, geometry or tolerance that is none, or a geometry that is no plane; a function that is no number on this picture; a
+    /// tolerance that 32-bit floats do not reach; a picture whose transform takes too much memory.
+    pub fn for_profile(
+        geometry: &Geometry,
+        profile: impl Fn(f64) -> f64 + Sync,
+        size: [usize; 2],
+        border: Border,
+        tolerance: f64,
+    ) -> Result<Self, Error> {
+        geometry.check(size, border)?;
+        check_picture(size, tolerance)?;
+        let Geometry::Planar { pitch, solid_angle } = *geometry else {
+            return Err(Error::Geometry("a function without a mixture of Gaussians has a veil on a plane only".into()));
+        };
+        let value = |distance: f64| solid_angle * profile(pitch * distance);
+        let task = transform::Task { size, border, tolerance };
+        Ok(Self::transform(task, Transform::of_profile(task, value, true, Choice::Cheaper)?))
+    }
+
+    /// The veil of a picture as the kernel, on a plane.
+    ///
+    /// # Errors
+    /// A size or a tolerance that is none or that 32-bit floats do not reach; a picture whose transform takes too much memory.
+    pub fn for_picture(picture: &Picture, size: [usize; 2], border: Border, tolerance: f64) -> Result<Self, Error> {
+        check_picture(size, tolerance)?;
+        let task = transform::Task { size, border, tolerance };
+        Ok(Self::transform(task, Transform::of_picture(task, picture, Choice::Cheaper)?))
+    }
+
+    fn transform(task: transform::Task, transform: Transform) -> Self {
+        let [bound, rounding] = transform.predicted();
+        let predicted = Predicted {
+            bound,
+            rounding,
+            operations: transform.cost.operations(&task),
+            direct: 0,
+            lattices: Vec::new(),
+            dropped: 0,
+            reach: 0.0,
+        };
+        Self { size: task.size, predicted, way: Way::Transform(Arc::new(transform)) }
+    }
+
+    /// By the pyramid, or by the transform where that costs less or the pyramid cannot.
+    fn on_plane(planar: [f64; 2], kernel: &Kernel, task: transform::Task) -> Result<Self, Error> {
+        let transform::Task { size, border, tolerance } = task;
+        let [pitch, solid_angle] = planar;
+        let transform = || {
+            let value = |distance: f64| solid_angle * kernel.at(pitch * distance);
+            let mut plan = Self::transform(task, Transform::of_profile(task, value, false, Choice::Cheaper)?);
+            plan.predicted.dropped = kernel.mixture().terms.len();
+            Ok(plan)
+        };
+        match Self::planar(planar, kernel, size, border, tolerance) {
+            Ok(plan) => {
+                let cost = pyramid_nanoseconds(plan.predicted.operations, &task);
+                let cheaper = cost > Transform::least_nanoseconds(&task);
+                if cheaper { transform().or(Ok(plan)) } else { Ok(plan) }
+            }
+            Err(refused @ (Error::OutOfReach { .. } | Error::Core { .. })) => {
+                transform().map_err(|error| if matches!(error, Error::Memory { .. }) { refused } else { error })
+            }
+            Err(error) => Err(error),
         }
     }
 
@@ -251,6 +339,27 @@ impl Plan {
     pub fn size(&self) -> [usize; 2] {
         self.size
     }
+
+    /// How it is summed.
+    pub fn method(&self) -> Method {
+        match &self.way {
+            Way::Plane(_) => Method::Pyramid,
+            Way::Sphere(_) => Method::Sphere,
+            Way::Direct(..) => Method::Sum,
+            Way::Transform(transform) => match transform.points() {
+                Some(points) => Method::Transform { points },
+                None => Method::Sum,
+            },
+        }
+    }
+
+    /// Bytes that a transform and its evaluation take besides photo and veil; none of other methods is told.
+    pub fn memory(&self) -> Option<usize> {
+        match &self.way {
+            Way::Transform(transform) => Some(transform.cost.bytes),
+            _ => None,
+        }
+    }
 }
 
 impl Planar {
@@ -266,6 +375,17 @@ impl Spherical {
         let [from, to] = [from, to].map(|at| self.camera.point(at[0] as f64, at[1] as f64));
         from.solid_angle * self.kernel.at(angle(from.chord(&to)))
     }
+}
+
+/// Whether a picture may have this size, and a veil this tolerance.
+fn check_picture([width, height]: [usize; 2], tolerance: f64) -> Result<(), Error> {
+    if width == 0 || height == 0 || width.max(height) > LONGEST_SIDE {
+        return Err(Error::Size { width, height, most: LONGEST_SIDE });
+    }
+    if !(tolerance > 0.0 && tolerance < 1.0) {
+        return Err(Error::Tolerance(tolerance));
+    }
+    Ok(())
 }
 
 /// Whether a kernel may have this value at an angle or a distance.

@@ -6,6 +6,7 @@ mod kernels;
 mod photos;
 mod planar;
 mod spherical;
+mod transform;
 
 use super::reference::{self, Window};
 use super::{Border, FLOOR, Geometry, Kernel, Photo, Veil};

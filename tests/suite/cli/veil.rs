@@ -223,3 +223,55 @@ fn functions_are_shown_drawn_and_written() {
     place.vglare(&["psf", "cie", "--plot", "psf.pdf"]).failed(1, &["psf.pdf", ".svg"]);
     place.vglare(&["psf", "cie", "--csv", "cie.csv"]).failed(1, &["cie.csv"]);
 }
+
+#[test]
+fn a_picture_as_kernel_is_seen_as_it_lies_in_its_file() {
+    let place = Workplace::new();
+    // No two pixels alike, and no way to turn it that leaves it the same; its centre is the third of five columns, the third of four rows.
+    let kernel = |column: usize, row: usize| [0, 1, 2].map(|channel| ((5 * row + column + 1) * (channel + 1)) as f32);
+    let pixels = (0..20).map(|at| kernel(at % 5, at / 5)).map(|[r, g, b]| [r, g, b, 1.0]).collect();
+    place.write("star.exr", &Photo::new(5, 4, pixels));
+    let mut photo = point(80, 50, 1.0);
+    photo.pixels[50 * WIDTH + 80] = [1.0, 10.0, 100.0, 1.0];
+    place.write("in.exr", &photo);
+    let line = "apply in.exr --glare veil.exr --lens none --veil kernel --kernel star.exr --scatter 0.4 --tolerance 1e-6 --strict \
+                --report report.json";
+    place.vglare(&words(line)).succeeded();
+    let veil = photo::read(&place.path("veil.exr")).unwrap();
+    // A mean energy of 1 over the channels: the sum of 1 to 20, twice.
+    let energy = 420.0;
+    for row in 46..54 {
+        for column in 76..84 {
+            let (x, y) = (column + 2 - 80, row + 2 - 50);
+            let inside = (column, row) != (80, 50) && x < 5 && y < 4 && column + 2 >= 80 && row + 2 >= 50;
+            let wanted = if inside { kernel(x, y) } else { [0.0; 3] };
+            for (channel, light) in [1.0, 10.0, 100.0].into_iter().enumerate() {
+                let wanted = light * 0.4 * wanted[channel] / energy;
+                let value = veil.pixels[row * WIDTH + column][channel];
+                assert!((value - wanted).abs() <= 1e-6 * wanted, "{column}, {row}, {channel}: {value:e} {wanted:e}");
+            }
+        }
+    }
+    let report = place.read_json("report.json");
+    assert!(report["veil"]["error"]["predicted"].as_f64().unwrap() <= 1e-6, "{report}");
+}
+
+#[test]
+fn what_no_gaussians_follow_is_transformed() {
+    let place = Workplace::new();
+    place.write("in.exr", &point(80, 50, 1.0));
+    // A ring, which rises fivefold within a pixel.
+    place.text("ring.csv", "0,1\n0.1,1\n0.12,0.2\n0.2,0.2\n0.22,1\n0.3,1\n0.32,0.1\n0.4,0.1\n");
+    let line = "apply in.exr --glare veil.exr --lens none --veil table --table ring.csv --scatter 0.3 --tolerance 1e-6 --strict \
+                --verify full --report report.json";
+    place.vglare(&words(line)).succeeded();
+    let veil = photo::read(&place.path("veil.exr")).unwrap();
+    let [hollow, ring, skirt] = [88, 92, 97].map(|column| f64::from(veil.pixels[50 * WIDTH + column][0]));
+    assert!((hollow / ring - 0.2).abs() < 1e-5 && (skirt / ring - 0.1).abs() < 1e-5, "{hollow:e} {ring:e} {skirt:e}");
+    let report = place.read_json("report.json");
+    let [predicted, measured] = ["predicted", "measured"].map(|key| report["veil"]["error"][key].as_f64().unwrap());
+    assert!(measured <= predicted && predicted <= 1e-6, "{report}");
+    // On the sphere there is no such way yet.
+    place.text("fov.toml", "[veil]\npsf = \"table\"\ntable = \"ring.csv\"\nprojection = \"rectilinear\"\nfov = 50\n");
+    place.vglare(&["apply", "in.exr", "-o", "out.exr", "--scene", "fov.toml"]).failed(2, &["projection"]);
+}
