@@ -111,6 +111,11 @@ impl<T: Real> Plane<T> {
         (0..self.height as isize).contains(&y).then(|| self.row(y as usize))
     }
 
+    /// All rows from one on.
+    pub(super) fn rows_from_mut(&mut self, y: usize) -> &mut [T] {
+        &mut self.data[y * self.stride..]
+    }
+
     /// All rows, for many threads.
     pub(super) fn par_rows_mut(&mut self) -> impl IndexedParallelIterator<Item = &mut [T]> {
         self.data.par_chunks_mut(self.stride).with_min_len(8)

@@ -18,31 +18,26 @@ mod lattice;
 mod near;
 mod own;
 mod samples;
+mod spherical;
 
 use std::sync::Arc;
 
 pub(super) use lattice::{Lattice, kernel, weights};
 pub(super) use near::Near;
 pub(super) use own::{Own, PERIOD};
+pub(super) use spherical::{Road, Spherical};
 
 use super::error::Error;
 use super::evaluate::{Pool, Workspace};
 use super::geometry::{Border, Geometry};
 use super::kernel::{Gaussian, Kernel};
 use super::picture::Picture;
-use super::sphere::{self, Camera, Sphere, Task, angle};
 use super::transform::{self, Choice, Transform, pyramid_nanoseconds};
 use choose::{Chooser, Chosen};
 use samples::Samples;
 
 /// The longest side of a picture.
 pub const LONGEST_SIDE: usize = 1 << 16;
-
-/// Pixels up to which a picture of the sphere is summed directly, in milliseconds.
-const TINY: usize = 1 << 8;
-
-/// Pixels up to which it is where nothing else meets the tolerance, in a second or less.
-const SMALL: usize = 1 << 13;
 
 /// The error of a direct sum: of its rounding to 32 bits.
 pub(super) const DIRECT: f64 = 1e-7;
@@ -147,16 +142,6 @@ pub(super) struct Planar {
     pub layers: Layers,
     pub roundings: f64,
     pub pool: Pool<Workspace>,
-}
-
-/// On the sphere.
-#[derive(Debug, Clone)]
-pub(super) struct Spherical {
-    pub kernel: Kernel,
-    pub camera: Camera,
-    pub tolerance: f64,
-    pub sphere: Sphere,
-    pub roundings: f64,
 }
 
 impl Plan {
@@ -282,41 +267,6 @@ impl Plan {
         Ok(Self { size, predicted, way: Way::Plane(Box::new(planar)) })
     }
 
-    fn spherical(geometry: &Geometry, camera: Camera, kernel: &Kernel, tolerance: f64) -> Result<Self, Error> {
-        let size = camera.size;
-        let [first, last] = [camera.point(0.0, 0.0), camera.point(size[0] as f64 - 1.0, size[1] as f64 - 1.0)];
-        let (mut chord, longest) = (0.5 / camera.focal, first.chord(&last));
-        while chord < 1.03 * longest {
-            check(kernel.at(angle(chord)), angle(chord))?;
-            chord *= 1.03;
-        }
-        let pixels = size[0] * size[1];
-        if pixels <= TINY {
-            return Ok(Self::direct(geometry, kernel, size));
-        }
-        let mixture = kernel.mixture();
-        let profile = |angle: f64| kernel.at(angle);
-        let task = Task { camera, profile: &profile, mixture: &mixture.terms, constant: mixture.constant, tolerance };
-        let chosen = match sphere::choose(&task) {
-            Err(Error::OutOfReach { .. } | Error::Core { .. }) if pixels <= SMALL && tolerance > DIRECT => {
-                return Ok(Self::direct(geometry, kernel, size));
-            }
-            chosen => chosen?,
-        };
-        let predicted = Predicted {
-            bound: chosen.bound,
-            rounding: chosen.rounding,
-            operations: chosen.operations,
-            direct: 0,
-            dropped: mixture.terms.len().saturating_sub(chosen.lattices.iter().sum::<usize>()),
-            lattices: chosen.lattices,
-            reach: chosen.reach,
-        };
-        let spherical =
-            Spherical { kernel: kernel.clone(), camera, tolerance, sphere: chosen.sphere, roundings: chosen.roundings };
-        Ok(Self { size, predicted, way: Way::Sphere(Box::new(spherical)) })
-    }
-
     fn direct(geometry: &Geometry, kernel: &Kernel, size: [usize; 2]) -> Self {
         let predicted = Predicted {
             bound: DIRECT,
@@ -366,14 +316,6 @@ impl Planar {
     /// What a pixel of light 1 should send to another, `distance` pixels apart.
     pub fn wanted(&self, distance: f64) -> f64 {
         self.solid_angle * self.kernel.at(self.pitch * distance)
-    }
-}
-
-impl Spherical {
-    /// What a pixel of light 1 should send to another.
-    pub fn wanted(&self, from: [usize; 2], to: [usize; 2]) -> f64 {
-        let [from, to] = [from, to].map(|at| self.camera.point(at[0] as f64, at[1] as f64));
-        from.solid_angle * self.kernel.at(angle(from.chord(&to)))
     }
 }
 

@@ -6,11 +6,32 @@
 /// Samples of the kernel, each further by the same factor.
 const SAMPLES: usize = 240;
 
+/// No exponent is above this: a steeper kernel is none that a lattice sees for long.
+const MOST_EXPONENT: f64 = 6.0;
+
+/// A sum of Gaussians that is off by more is not the kernel.
+const MISSING: f64 = 0.03;
+
+/// Rounds of mending exponents.
+const MENDED: usize = 16;
+
 /// Rounds of weighting.
 const ROUNDS: usize = 60;
 
-/// Weights for Gaussians exp(−c² / 2 width²), so that they and `constant` come close to `wanted` from chord `from` to `to`.
+/// Weights for Gaussians exp(−c² / 2 width²), so that they come close to `wanted` from chord `from` to `to`.
 pub(super) fn fit(widths: &[f64], wanted: impl Fn(f64) -> f64, from: f64, to: f64) -> Vec<f64> {
+    let value = |chord: f64, index: usize| (-0.5 * (chord / widths[index]).powi(2)).exp();
+    fit_columns(widths.len(), value, wanted, [from, to], ROUNDS)
+}
+
+/// The same for any functions of the chord.
+pub(super) fn fit_columns(
+    count: usize,
+    value: impl Fn(f64, usize) -> f64,
+    wanted: impl Fn(f64) -> f64,
+    [from, to]: [f64; 2],
+    rounds: usize,
+) -> Vec<f64> {
     let step = (to / from).max(1.0 + 1e-9).powf(1.0 / (SAMPLES - 1) as f64);
     let chords: Vec<f64> = (0..SAMPLES).map(|index| from * step.powi(index as i32)).collect();
     // Each row is relative to the wanted value there.
@@ -18,12 +39,12 @@ pub(super) fn fit(widths: &[f64], wanted: impl Fn(f64) -> f64, from: f64, to: f6
         .iter()
         .map(|chord| {
             let wanted = wanted(*chord).max(f64::MIN_POSITIVE);
-            widths.iter().map(|width| (-0.5 * (chord / width).powi(2)).exp() / wanted).collect()
+            (0..count).map(|index| value(*chord, index) / wanted).collect()
         })
         .collect();
     let mut importance = vec![1.0 / SAMPLES as f64; SAMPLES];
-    let (mut best, mut least) = (vec![0.0; widths.len()], f64::INFINITY);
-    for _ in 0..ROUNDS {
+    let (mut best, mut least) = (vec![0.0; count], f64::INFINITY);
+    for _ in 0..rounds {
         let weights = least_squares(&rows, &importance);
         let error =
             |row: &Vec<f64>| (row.iter().zip(&weights).map(|(value, weight)| value * weight).sum::<f64>() - 1.0).abs();
@@ -40,6 +61,48 @@ pub(super) fn fit(widths: &[f64], wanted: impl Fn(f64) -> f64, from: f64, to: f6
         }
     }
     best
+}
+
+/// By groups of Gaussians, as their values at a chord: the exponent s of the power of the chord that they are part of, so that Σ s · Gaussians is
+/// −c dk/dc of the kernel k, or nearly so: the mean exponent where a group is most of the kernel, mended a few times by what the sum
+/// lacks (van Cittert), which stays smooth where least squares would not. A group that is not used has its neighbour's.
+pub(super) fn exponents(
+    groups: impl Fn(f64) -> Vec<f64>,
+    used: &[bool],
+    wanted: impl Fn(f64) -> f64,
+    [from, to]: [f64; 2],
+) -> Vec<f64> {
+    const APART: f64 = 1.01;
+    let step = (to / from).max(1.0 + 1e-9).powf(1.0 / (SAMPLES - 1) as f64);
+    let sample = |index: usize| {
+        let chord = from * step.powi(index as i32);
+        let values = groups(chord);
+        let (all, wanted_here) = (values.iter().sum::<f64>(), wanted(chord));
+        // What narrower Gaussians would add, which no lattice takes, says nothing of these.
+        let whole = wanted_here > 0.0 && (all / wanted_here - 1.0).abs() < MISSING;
+        let slope = (wanted(chord / APART) / wanted(chord * APART)).ln() / (2.0 * APART.ln());
+        whole.then(|| (values.iter().map(|value| value / all).collect::<Vec<f64>>(), slope.clamp(0.0, MOST_EXPONENT)))
+    };
+    let samples: Vec<(Vec<f64>, f64)> = (0..SAMPLES).filter_map(sample).collect();
+    let mut exponents = vec![0.0; used.len()];
+    for _ in 0..MENDED {
+        let lacks: Vec<f64> = samples
+            .iter()
+            .map(|(shares, slope)| slope - shares.iter().zip(&exponents).map(|(share, of)| share * of).sum::<f64>())
+            .collect();
+        for (group, exponent) in exponents.iter_mut().enumerate() {
+            let each = || samples.iter().map(|(shares, _)| shares[group].powi(2));
+            let all: f64 = each().sum();
+            if all > 0.0 {
+                *exponent += each().zip(&lacks).map(|(share, lack)| share * lack).sum::<f64>() / all;
+            }
+        }
+    }
+    let known: Vec<usize> = (0..used.len()).filter(|group| used[*group]).collect();
+    let own = |group: usize| {
+        known.iter().find(|known| **known >= group).or(known.last()).map_or(0.0, |known| exponents[*known])
+    };
+    (0..used.len()).map(own).collect()
 }
 
 /// The largest error of a sum of Gaussians, as widths and weights, relative to `wanted`, between two chords.
@@ -78,7 +141,9 @@ fn least_squares(rows: &[Vec<f64>], importance: &[f64]) -> Vec<f64> {
             .max_by(|one, other| slope(*one).total_cmp(&slope(*other)));
         let Some(next) = next.filter(|next| slope(*next) > 1e-13) else { break };
         active.push(next);
-        while let Some(trial) = solve(&gram, &right, &active) {
+        // Each round but the last takes one out; where rounding would let it go on, it ends.
+        for _ in 0..=count {
+            let Some(trial) = solve(&gram, &right, &active) else { break };
             let share = active
                 .iter()
                 .zip(&trial)

@@ -1,208 +1,181 @@
 //! From pixels to the finest lattice of the stereographic image, and back.
 //!
-//! Pixels are scattered points there. Several values travel together: three channels by as many powers of the depth, as lanes.
+//! Pixels are scattered points there. The three channels travel together, as lanes.
+
+use std::collections::HashSet;
 
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::model::Model;
-use crate::veil::simd::Plane;
+use super::table::{BAND, Table};
+use crate::veil::simd::{Into, Plane};
 
-/// Rows of pixels that a thread scatters at a time, into a part of the lattice of its own.
-const BAND: usize = 48;
+/// A point of the lattice: three channels, and a lane that fills the vector.
+pub(super) type Cell = [f32; 4];
 
-/// A pixel on the image.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Entry {
-    /// In cells from the first column and row.
-    pub at: [f32; 2],
-    /// −ln(1 + |a|²) above half the middle of pairs' depths.
-    pub depth: f32,
-    /// The solid angle times 1 + |a|².
-    pub weight: f32,
-    /// √ of the solid angle.
-    pub root: f32,
-    /// What the image and the constant return of the pixel's own light.
-    pub own: f32,
-}
-
-/// The upper left quarter of the picture: the others are its mirror images.
-#[derive(Debug, Clone)]
-pub(in crate::veil) struct Table {
-    size: [usize; 2],
-    columns: usize,
-    entries: Vec<Entry>,
-    /// From the first column and row to the last, in cells: whole numbers.
-    length: [f32; 2],
-    /// For each band of pixels, the lattice's rows that it meets.
-    bands: Vec<[usize; 2]>,
-}
-
-impl Entry {
-    /// 1 + |a|².
-    #[inline(always)]
-    pub fn growth(&self) -> f32 {
-        self.weight / (self.root * self.root)
-    }
-}
-
-impl Table {
-    pub fn new(model: &Model) -> Self {
-        let size = model.camera.size;
-        let [columns, rows] = size.map(|side| side.div_ceil(2));
-        let entry = |index: usize| {
-            let point = model.camera.point((index % columns) as f64, (index / columns) as f64);
-            let at = [0, 1].map(|side| ((point.at[side] - model.first[side]) / model.cell) as f32);
-            let own = point.solid_angle * model.own(point.depth, at.map(f64::from));
-            Entry {
-                at,
-                depth: (point.depth - 0.5 * model.depths.middle) as f32,
-                weight: (point.solid_angle * (-point.depth).exp()) as f32,
-                root: point.solid_angle.sqrt() as f32,
-                own: own as f32,
-            }
-        };
-        let entries: Vec<Entry> = (0..columns * rows).into_par_iter().with_min_len(4096).map(entry).collect();
-        let length = model.first.map(|first| (-2.0 * first / model.cell).round() as f32);
-        let mut table = Self { size, columns, entries, length, bands: Vec::new() };
-        let points = model.points()[1];
-        table.bands = (0..size[1].div_ceil(BAND)).map(|band| table.band(band, points)).collect();
-        table
-    }
-
-    /// A pixel.
-    pub fn entry(&self, x: usize, y: usize) -> Entry {
-        let [u, v] = [(x, 0), (y, 1)].map(|(at, side)| at.min(self.size[side] - 1 - at));
-        let mut entry = self.entries[v * self.columns + u];
-        for (side, turned) in [u != x, v != y].into_iter().enumerate() {
-            if turned {
-                entry.at[side] = self.length[side] - entry.at[side];
-            }
-        }
-        entry
-    }
-
-    /// All pixels of a row.
-    pub fn row(&self, y: usize, row: &mut Vec<Entry>) {
-        let v = y.min(self.size[1] - 1 - y);
-        let quarter = &self.entries[v * self.columns..][..self.columns];
-        row.clear();
-        row.extend_from_slice(quarter);
-        let mirrored = quarter[..self.size[0] - self.columns].iter().rev();
-        row.extend(mirrored.map(|entry| Entry { at: [self.length[0] - entry.at[0], entry.at[1]], ..*entry }));
-        if v != y {
-            row.iter_mut().for_each(|entry| entry.at[1] = self.length[1] - entry.at[1]);
-        }
-    }
-
-    /// The largest that is returned of a pixel's own light.
-    pub fn own_largest(&self) -> f64 {
-        f64::from(self.entries.iter().map(|entry| entry.own).fold(0.0, f32::max))
-    }
-
-    fn band(&self, band: usize, points: usize) -> [usize; 2] {
-        let rows = band * BAND..((band + 1) * BAND).min(self.size[1]);
-        let [mut least, mut largest] = [f32::INFINITY, 0.0f32];
-        let mut row = Vec::new();
-        for y in [rows.start, rows.end - 1] {
-            self.row(y, &mut row);
-            (least, largest) = row
-                .iter()
-                .fold((least, largest), |(least, largest), entry| (least.min(entry.at[1]), largest.max(entry.at[1])));
-        }
-        [least as usize, (largest as usize + 4).min(points)]
-    }
-}
-
-/// β at the four points around `t`: the first of them, and the values.
+/// β at the four points around `f`, from the one before it.
 #[inline(always)]
-fn weights(t: f32) -> (usize, [f32; 4]) {
-    let base = t as usize;
-    let f = t - base as f32;
+fn weights(f: f32) -> [f32; 4] {
     let (g, square) = (1.0 - f, f * f);
     let sixth = 1.0 / 6.0;
     let inner = sixth * (4.0 - 3.0 * square * (2.0 - f));
     let first = sixth * g * g * g;
     let last = sixth * square * f;
-    (base, [first, inner, 1.0 - first - inner - last, last])
+    [first, inner, 1.0 - first - inner - last, last]
 }
 
-/// Scatters light into `planes`, channel by channel for each power of the depth, by way of `parts` of the lattice.
-pub(super) fn scatter<const N: usize>(
+/// What a band of rows leaves besides the lattice.
+pub(super) struct Sent<'a> {
+    /// By channels: the light times √ of the solid angle, in rows that begin `margin` before the first pixel.
+    pub near: [&'a mut [f32]; 3],
+    pub stride: usize,
+    pub margin: usize,
+}
+
+/// Scatters light into `planes` by way of `parts` of the lattice, one for each band, and into `near`, whose rows of pixels these are. Returns the
+/// sums of light times solid angle.
+pub(super) fn scatter(
     arch: Arch,
     table: &Table,
     lights: [&Plane<f32>; 3],
-    parts: &mut Vec<Vec<f32>>,
-    planes: [Vec<&mut Plane<f32>>; 3],
-) {
-    let columns = planes[0][0].width();
+    parts: &mut Vec<Vec<Cell>>,
+    planes: [&mut Plane<f32>; 3],
+    (near, stride, margin): ([&mut [f32]; 3], usize, usize),
+) -> [f64; 3] {
+    let columns = planes[0].width();
     parts.resize_with(table.bands.len(), Vec::new);
-    parts.par_iter_mut().zip(&table.bands).enumerate().for_each(|(band, (part, [first, end]))| {
-        part.clear();
-        part.resize((end - first) * columns * N, 0.0);
-        let rows = [band * BAND, ((band + 1) * BAND).min(table.size[1])];
-        arch.dispatch(Splat::<N> { table, lights, rows, first: *first, columns, part: part.as_chunks_mut().0 });
+    let [red, green, blue] = near.map(|near| near.chunks_mut(BAND * stride));
+    let near = red.zip(green).zip(blue).take(table.bands.len());
+    let mut sent: Vec<Sent> =
+        near.map(|((red, green), blue)| Sent { near: [red, green, blue], stride, margin }).collect();
+    let bands = parts.par_iter_mut().zip(&table.bands).zip(&mut sent).enumerate();
+    let totals: Vec<[f64; 3]> = bands
+        .map(|(band, ((part, [first, end]), sent))| {
+            part.clear();
+            part.resize((end - first) * columns, [0.0; 4]);
+            let rows = [band * BAND, ((band + 1) * BAND).min(table.size[1])];
+            arch.dispatch(Splat { table, lights, rows, first: *first, columns, part, sent })
+        })
+        .collect();
+    let [red, green, blue] = planes;
+    let rows = red.par_rows_mut().zip(green.par_rows_mut()).zip(blue.par_rows_mut()).enumerate();
+    rows.for_each(|(row, ((red, green), blue))| {
+        let mut out = [red, green, blue];
+        let mut into = Into::Set;
+        for (part, [first, end]) in parts.iter().zip(&table.bands) {
+            if (*first..*end).contains(&row) {
+                let cells = &part[(row - first) * columns..][..columns];
+                arch.dispatch(Deal { cells, into, out: out.each_mut().map(|out| &mut out[..columns]) });
+                into = Into::Add;
+            }
+        }
+        if into == Into::Set {
+            out.into_iter().for_each(|out| out.fill(0.0));
+        }
     });
-    for (channel, planes) in planes.into_iter().enumerate() {
-        for (power, plane) in planes.into_iter().enumerate() {
-            plane.par_rows_mut().enumerate().for_each(|(row, out)| {
-                let out = &mut out[..columns];
-                out.fill(0.0);
-                for (part, [first, end]) in parts.iter().zip(&table.bands) {
-                    if (*first..*end).contains(&row) {
-                        let values = &part.as_chunks::<N>().0[(row - first) * columns..][..columns];
-                        out.iter_mut().zip(values).for_each(|(out, value)| *out += value[3 * power + channel]);
+    [0, 1, 2].map(|channel| totals.iter().map(|total| total[channel]).sum())
+}
+
+/// Scatters anew around pixels whose light has changed: what the cells that they meet hold of all pixels.
+pub(super) fn mend(table: &Table, light: &Plane<f32>, pixels: &[[usize; 2]], plane: &mut Plane<f32>) {
+    let mut cells: Vec<[usize; 2]> = Vec::with_capacity(16 * pixels.len());
+    let mut met: HashSet<[usize; 2]> = HashSet::new();
+    for pixel in pixels {
+        let [column, row] = table.entry(pixel[0], pixel[1]).cell.map(|cell| cell as usize);
+        cells.extend((0..16).map(|index| [column + index % 4, row + index / 4]));
+        // Whoever meets one of these is at most three cells away: from the pixel to its neighbours, and on.
+        let (mut seen, mut open) = (HashSet::from([*pixel]), vec![*pixel]);
+        while let Some([x, y]) = open.pop() {
+            for v in y.saturating_sub(1)..(y + 2).min(table.size[1]) {
+                for u in x.saturating_sub(1)..(x + 2).min(table.size[0]) {
+                    let [other, below] = table.entry(u, v).cell.map(|cell| cell as usize);
+                    if other.abs_diff(column) < 4 && below.abs_diff(row) < 4 && seen.insert([u, v]) {
+                        open.push([u, v]);
                     }
                 }
-            });
+            }
+        }
+        met.extend(seen);
+    }
+    let mut met: Vec<[usize; 2]> = met.into_iter().collect();
+    for list in [&mut cells, &mut met] {
+        list.sort_unstable_by_key(|[x, y]| [*y, *x]);
+        list.dedup();
+    }
+    for [x, y] in &cells {
+        plane.row_mut(*y)[*x] = 0.0;
+    }
+    let held = |cell: [usize; 2]| cells.binary_search_by_key(&[cell[1], cell[0]], |[x, y]| [*y, *x]).is_ok();
+    for [x, y] in met {
+        let entry = table.entry(x, y);
+        let light = light.row(y)[x] * entry.root * entry.root * entry.growth;
+        if light == 0.0 {
+            continue;
+        }
+        let ([column, row], [across, down]) = (entry.cell.map(|cell| cell as usize), entry.phase.map(weights));
+        for (v, down) in down.into_iter().enumerate() {
+            for (u, across) in across.into_iter().enumerate() {
+                if held([column + u, row + v]) {
+                    plane.row_mut(row + v)[column + u] += down * across * light;
+                }
+            }
         }
     }
 }
 
-struct Splat<'a, const N: usize> {
+struct Splat<'a, 'b> {
     table: &'a Table,
     lights: [&'a Plane<f32>; 3],
     rows: [usize; 2],
     first: usize,
     columns: usize,
-    part: &'a mut [[f32; N]],
+    part: &'a mut [Cell],
+    sent: &'a mut Sent<'b>,
 }
 
-impl<const N: usize> WithSimd for Splat<'_, N> {
-    type Output = ();
+impl WithSimd for Splat<'_, '_> {
+    type Output = [f64; 3];
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let Self { table, lights, rows, first, columns, part } = self;
-        let mut entries = Vec::with_capacity(table.size[0]);
+    fn with_simd<S: Simd>(self, _: S) -> [f64; 3] {
+        let Self { table, lights, rows, first, columns, part, sent } = self;
+        let mut totals = [0.0; 3];
         for y in rows[0]..rows[1] {
             let light = lights.map(|light| &light.row(y)[..table.size[0]]);
-            table.row(y, &mut entries);
-            for (x, entry) in entries.iter().enumerate() {
-                let light = light.map(|light| light[x]);
+            let mut sums = [0.0; 3];
+            let row = table.row(y);
+            let start = (y - rows[0]) * sent.stride + sent.margin;
+            let mut near = sent.near.each_mut().map(|near| &mut near[start..][..table.size[0]]);
+            for x in 0..table.size[0] {
+                let entry = row.at(x);
+                let light = light.map(|light| entry.root * light[x]);
+                for (near, light) in near.iter_mut().zip(light) {
+                    near[x] = light;
+                }
                 if light == [0.0; 3] {
                     continue;
                 }
-                let mut lanes = [0.0; N];
-                let mut factor = entry.weight;
-                for power in 0..N / 3 {
-                    for channel in 0..3 {
-                        lanes[3 * power + channel] = factor * light[channel];
-                    }
-                    factor *= entry.depth;
+                let light = light.map(|light| entry.root * light);
+                for (sum, light) in sums.iter_mut().zip(light) {
+                    *sum += f64::from(light);
                 }
-                let ((column, across), (row, down)) = (weights(entry.at[0]), weights(entry.at[1]));
+                let light = light.map(|light| entry.growth * light);
+                let [across, down] = entry.phase.map(weights);
+                // Four points of a row, each with its lanes.
+                let lanes: [f32; 16] =
+                    std::array::from_fn(|lane| if lane % 4 < 3 { across[lane / 4] * light[lane % 4] } else { 0.0 });
+                let [column, row] = entry.cell.map(|cell| cell as usize);
                 for (index, down) in down.into_iter().enumerate() {
                     let cells = &mut part[(row - first + index) * columns + column..][..4];
-                    for (cell, across) in cells.iter_mut().zip(across) {
-                        let weight = down * across;
-                        for (cell, lane) in cell.iter_mut().zip(lanes) {
-                            *cell = fused::<S>(weight, lane, *cell);
-                        }
+                    let cells = cells.as_flattened_mut();
+                    for (cell, lane) in cells.iter_mut().zip(lanes) {
+                        *cell = fused::<S>(down, lane, *cell);
                     }
                 }
             }
+            totals.iter_mut().zip(sums).for_each(|(total, sum)| *total += sum);
         }
+        totals
     }
 }
 
@@ -212,59 +185,107 @@ fn fused<S: Simd>(a: f32, b: f32, c: f32) -> f32 {
     if S::IS_SCALAR { a * b + c } else { a.mul_add(b, c) }
 }
 
-/// The lattice with its lanes side by side.
-pub(super) fn interleave<const N: usize>(planes: [&[&Plane<f32>]; 3], lattice: &mut Vec<f32>) {
-    let (columns, rows) = (planes[0][0].width(), planes[0][0].height());
-    lattice.resize(columns * rows * N, 0.0);
-    lattice.par_chunks_mut(columns * N).enumerate().for_each(|(row, out)| {
-        for (channel, planes) in planes.iter().enumerate() {
-            for (power, plane) in planes.iter().enumerate() {
-                let out = out.as_chunks_mut::<N>().0.iter_mut();
-                out.zip(plane.row(row)).for_each(|(out, value)| out[3 * power + channel] = *value);
-            }
-        }
-    });
+/// Cells to rows of channels.
+struct Deal<'a> {
+    cells: &'a [Cell],
+    into: Into,
+    out: [&'a mut [f32]; 3],
 }
 
-/// What the lattice comes to along a row of pixels, with the target's factors.
-pub(super) struct Gather<'a, const N: usize> {
-    pub entries: &'a [Entry],
-    pub lattice: &'a [[f32; N]],
-    pub columns: usize,
-    pub out: [&'a mut [f32]; 3],
-}
-
-impl<const N: usize> WithSimd for Gather<'_, N> {
+impl WithSimd for Deal<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { entries, lattice, columns, out } = self;
-        for (x, entry) in entries.iter().enumerate() {
-            let ((column, across), (row, down)) = (weights(entry.at[0]), weights(entry.at[1]));
-            let mut lanes = [0.0; N];
-            for (index, down) in down.into_iter().enumerate() {
-                let cells = &lattice[(row + index) * columns + column..][..4];
-                let mut along = [0.0; N];
-                for (cell, across) in cells.iter().zip(across) {
-                    for (along, cell) in along.iter_mut().zip(cell) {
-                        *along = fused::<S>(across, *cell, *along);
+        let Self { cells, into, out: [red, green, blue] } = self;
+        let out = cells.iter().zip(red).zip(green).zip(blue);
+        if into == Into::Set {
+            for (((cell, red), green), blue) in out {
+                (*red, *green, *blue) = (cell[0], cell[1], cell[2]);
+            }
+        } else {
+            for (((cell, red), green), blue) in out {
+                (*red, *green, *blue) = (*red + cell[0], *green + cell[1], *blue + cell[2]);
+            }
+        }
+    }
+}
+
+/// The lattice with its lanes side by side.
+pub(super) fn interleave(arch: Arch, planes: [&Plane<f32>; 3], lattice: &mut Vec<Cell>) {
+    let (columns, rows) = (planes[0].width(), planes[0].height());
+    lattice.resize(columns * rows, [0.0; 4]);
+    lattice.par_chunks_mut(columns).with_min_len(8).enumerate().for_each(|(row, out)| {
+        arch.dispatch(Shuffle { rows: planes.map(|plane| &plane.row(row)[..columns]), out });
+    });
+}
+
+/// Rows of channels to cells.
+struct Shuffle<'a> {
+    rows: [&'a [f32]; 3],
+    out: &'a mut [Cell],
+}
+
+impl WithSimd for Shuffle<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { rows: [red, green, blue], out } = self;
+        for (((out, red), green), blue) in out.iter_mut().zip(red).zip(green).zip(blue) {
+            *out = [*red, *green, *blue, 0.0];
+        }
+    }
+}
+
+/// What arrives along a row of pixels: the small kernels' sums with the target's factor, what all sources add everywhere, what the
+/// lattice comes to with the target's factor, less the pixels' own light; never negative.
+pub(super) struct Gather<'a> {
+    pub table: &'a Table,
+    pub y: usize,
+    pub lights: [&'a [f32]; 3],
+    pub everywhere: [f32; 3],
+    pub lattice: &'a [Cell],
+    pub columns: usize,
+    /// The small kernels' sums, to be replaced.
+    pub out: [&'a mut [f32]; 3],
+}
+
+impl WithSimd for Gather<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { table, y, lights, everywhere, lattice, columns, out } = self;
+        let width = table.size[0];
+        let lights = lights.map(|light| &light[..width]);
+        let [red, green, blue] = out;
+        let out = [&mut red[..width], &mut green[..width], &mut blue[..width]];
+        let row = table.row(y);
+        for x in 0..width {
+            let entry = row.at(x);
+            let mut sums = [0.0; 4];
+            if !lattice.is_empty() {
+                let [across, down] = entry.phase.map(weights);
+                let [column, row] = entry.cell.map(|cell| cell as usize);
+                let mut lanes = [0.0; 16];
+                for (index, down) in down.into_iter().enumerate() {
+                    let cells = lattice[(row + index) * columns + column..][..4].as_flattened();
+                    for (lane, cell) in lanes.iter_mut().zip(cells) {
+                        *lane = fused::<S>(down, *cell, *lane);
                     }
                 }
-                for (lane, along) in lanes.iter_mut().zip(along) {
-                    *lane = fused::<S>(down, along, *lane);
+                for (index, across) in across.into_iter().enumerate() {
+                    for (sum, lane) in sums.iter_mut().zip(&lanes[4 * index..]) {
+                        *sum = fused::<S>(across, *lane, *sum);
+                    }
                 }
             }
-            let mut sums = [0.0; 3];
-            let mut factor = entry.growth();
-            for power in 0..N / 3 {
-                for channel in 0..3 {
-                    sums[channel] += factor * lanes[3 * power + channel];
-                }
-                factor *= entry.depth;
-            }
+            let root = 1.0 / entry.root;
             for channel in 0..3 {
-                out[channel][x] += sums[channel];
+                let near = out[channel][x] * root + everywhere[channel];
+                let sum = fused::<S>(entry.growth, sums[channel], near) - entry.own * lights[channel][x];
+                out[channel][x] = sum.max(0.0);
             }
         }
     }

@@ -1,72 +1,67 @@
 //! The veil at single pixels: what the lattices and the small kernels come to there, without the convolutions in between.
 
-use pulp::Arch;
 use rayon::prelude::*;
 
 use super::Sphere;
 use super::model::Placed;
-use super::scatter::Entry;
-use crate::veil::photo::Sources;
+use super::sum::Workspace;
+use super::table::Entry;
 use crate::veil::plan::weights;
 use crate::veil::simd::Plane;
-use crate::veil::sweep::Pyramid;
 
 impl Sphere {
-    /// By channels: the veil at pixels that send no light themselves, in the scale of the sources.
-    pub fn at(&self, sources: &[Sources; 3], pixels: [&[[usize; 2]]; 3]) -> [Vec<f64>; 3] {
-        let mut workspace = self.pool.take(|| self.workspace());
-        let lights = sources.each_ref().map(|sources| &sources.plane);
+    /// A channel's veil at pixels that send no light themselves, but had `taken` before, in the scale of the sources. The workspace's moments are
+    /// right but for these pixels and `others`.
+    pub fn at(
+        &self,
+        light: &Plane<f32>,
+        pixels: &[[usize; 2]],
+        taken: &[f32],
+        others: &[[usize; 2]],
+        workspace: &mut Workspace,
+        channel: usize,
+    ) -> Vec<f64> {
+        let changed: Vec<[usize; 2]> = pixels.iter().chain(others).copied().collect();
         if !self.kernels.is_empty() {
-            match self.model.depths.count() {
-                1 => self.reduce::<4>(Arch::new(), lights, &mut workspace),
-                2 => self.reduce::<8>(Arch::new(), lights, &mut workspace),
-                _ => self.reduce::<12>(Arch::new(), lights, &mut workspace),
-            }
+            self.reduce_again(light, &changed, workspace, channel);
         }
-        let veils = [0, 1, 2].map(|channel| {
-            let (light, pyramids) = (lights[channel], &workspace.pyramids[channel]);
-            let everywhere = f64::from(self.everywhere(light));
-            let at = |[x, y]: &[usize; 2]| {
-                let entry = self.table.entry(*x, *y);
-                let near = self.tiles.at(*x, *y, |x, y| f64::from(light.row(y)[x] * self.table.entry(x, y).root));
-                everywhere + near / f64::from(entry.root) + self.image(&entry, pyramids)
-            };
-            pixels[channel].par_iter().map(at).collect()
-        });
-        self.pool.give_back(workspace);
-        veils
+        // As they were added, so that they cancel.
+        let sent = |([x, y], light): (&[usize; 2], &f32)| {
+            let root = self.table.entry(*x, *y).root;
+            f64::from(root * (root * light))
+        };
+        let rest = workspace.totals[channel] - pixels.iter().zip(taken).map(sent).sum::<f64>();
+        let everywhere = self.model.constant * rest.max(0.0);
+        let at = |[x, y]: &[usize; 2]| {
+            let entry = self.table.entry(*x, *y);
+            let near = self.tiles.at(*x, *y, |x, y| f64::from(light.row(y)[x] * self.table.entry(x, y).root));
+            let growth = (-self.model.camera.point(*x as f64, *y as f64).depth).exp();
+            everywhere + near / f64::from(entry.root) + self.image(&entry, growth, workspace, channel)
+        };
+        pixels.par_iter().map(at).collect()
     }
 
-    /// What the lattices send to a pixel.
-    fn image(&self, entry: &Entry, pyramids: &[Pyramid<f32>]) -> f64 {
-        let depth = f64::from(entry.depth);
-        let nodes = self.model.placed.iter().enumerate().map(|(node, placed)| {
-            let far: Vec<f64> =
-                (0..pyramids.len()).map(|source| self.model.depths.target(node, source, depth)).collect();
-            let local: f64 =
-                self.model.depths.polynomials[node].iter().rev().fold(0.0, |sum, value| sum * 2.0 * depth + value);
-            let each = placed.iter().map(|placed| {
-                let factors = if placed.level < self.model.local { &[local][..] } else { &far };
-                let planes = pyramids.iter().map(|pyramid| &pyramid.moments[placed.level]).zip(factors.iter().copied());
-                placed.weight * seen(placed, entry, &planes.collect::<Vec<_>>())
-            });
-            each.sum::<f64>()
+    /// What the lattices send to a pixel whose 1 + |a|² is `growth`.
+    fn image(&self, entry: &Entry, growth: f64, workspace: &Workspace, channel: usize) -> f64 {
+        let each = self.model.placed.iter().map(|placed| {
+            let [last, base] = self.model.chain;
+            let moments = match placed.slot.checked_sub(last + 1) {
+                None => &workspace.pyramids[channel].moments[placed.level],
+                Some(branch) => &workspace.branches[channel][branch].moments[placed.level - base],
+            };
+            placed.weight * growth.powf(self.model.powers[placed.slot]) * seen(placed, entry, moments)
         });
-        f64::from(entry.growth()) * nodes.sum::<f64>()
+        each.sum()
     }
 }
 
-/// What a kernel and the splines make of planes times factors at a pixel.
-fn seen(placed: &Placed, entry: &Entry, planes: &[(&Plane<f32>, f64)]) -> f64 {
-    let (columns, rows) = (planes[0].0.width(), planes[0].0.height());
-    let [(left, across), (top, down)] =
-        [(entry.at[0], columns), (entry.at[1], rows)].map(|(at, points)| along(placed, f64::from(at), points));
+/// What a kernel and the splines make of a lattice's moments at a pixel.
+fn seen(placed: &Placed, entry: &Entry, moments: &Plane<f32>) -> f64 {
+    let [(left, across), (top, down)] = [(0, moments.width()), (1, moments.height())]
+        .map(|(side, points)| along(placed, f64::from(entry.cell[side]) + f64::from(entry.phase[side]), points));
     let row = |(row, down): (usize, &f64)| {
-        let plane = |(plane, factor): &(&Plane<f32>, f64)| {
-            let values = across.iter().zip(&plane.row(top + row)[left..]);
-            factor * values.map(|(across, value)| across * f64::from(*value)).sum::<f64>()
-        };
-        down * planes.iter().map(plane).sum::<f64>()
+        let values = across.iter().zip(&moments.row(top + row)[left..]);
+        down * values.map(|(across, value)| across * f64::from(*value)).sum::<f64>()
     };
     down.iter().enumerate().map(row).sum()
 }

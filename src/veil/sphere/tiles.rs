@@ -1,19 +1,24 @@
-//! The small kernel around each pixel, which varies over the picture: one for each tile.
+//! The small kernel around each pixel, which varies over the picture: linearly over each tile.
 
 use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
+use super::camera::{Camera, Point};
 use super::model::{Model, Wanted};
 use crate::veil::simd::{Plane, Real};
 
-/// Most rows that are summed at a time, which share a tap.
-const ROWS: usize = 8;
+/// Most rows that are summed at a time.
+const ROWS: usize = 4;
 
-/// Most taps of all kernels together: a quarter of a gigabyte.
-const MOST_TAPS: usize = 1 << 26;
+/// Where in a tile, from its middle over half its size, the slopes of its kernel are taken: the remaining second order is
+/// smallest then.
+const SLOPE_AT: f64 = 0.7;
+
+/// Most taps of all kernels together: less than half a gigabyte.
+const MOST_TAPS: usize = 1 << 25;
 
 /// The farthest any kernel reaches, in pixels: beyond, it would cost more than it is worth.
-pub(super) const FARTHEST: usize = 72;
+pub(super) const FARTHEST: usize = 96;
 
 /// A run of taps in a row.
 #[derive(Debug, Clone, Copy)]
@@ -30,8 +35,11 @@ struct Run {
 #[derive(Debug, Clone, Default)]
 struct Kernel {
     runs: Vec<Run>,
-    taps: Vec<f32>,
+    taps: Vec<Tap>,
 }
+
+/// A value in the middle of a tile, and what is added to it for each column and row from there.
+type Tap = [f32; 3];
 
 /// All of them.
 #[derive(Debug, Clone)]
@@ -56,7 +64,7 @@ impl Tiles {
         let distinct = [0, 1].map(|side| if mirrored[side] { counts[side].div_ceil(2) } else { counts[side] });
         let kernel = |index: usize| {
             let tile = [index % distinct[0], index / distinct[0]];
-            Kernel::new(model, wanted, middle(tile, size))
+            Kernel::new(model, wanted, middle(tile, size), size)
         };
         let first: Option<Vec<Kernel>> = (0..distinct[0] * distinct[1]).into_par_iter().map(kernel).collect();
         let first = first?;
@@ -78,14 +86,18 @@ impl Tiles {
 
     /// The sum at one pixel, of sources by column and row.
     pub fn at(&self, x: usize, y: usize, source: impl Fn(usize, usize) -> f64) -> f64 {
-        let kernel = &self.kernels[y / self.size[1] * self.across + x / self.size[0]];
+        let tile = [x / self.size[0], y / self.size[1]];
+        let kernel = &self.kernels[tile[1] * self.across + tile[0]];
+        let middle = middle(tile, self.size);
+        let [u, v] = [x as f64 - middle[0], y as f64 - middle[1]];
         let run = |run: &Run| {
             let Some(row) = y.checked_add_signed(run.row).filter(|row| *row < self.picture[1]) else { return 0.0 };
             let taps = kernel.taps[run.start..run.end].iter().enumerate();
             let each = taps.filter_map(|(index, tap)| {
                 let column =
                     x.checked_add_signed(run.column + index as isize).filter(|column| *column < self.picture[0])?;
-                Some(f64::from(*tap) * source(column, row))
+                let [value, across, down] = tap.map(f64::from);
+                Some((value + u * across + v * down) * source(column, row))
             });
             each.sum::<f64>()
         };
@@ -98,18 +110,21 @@ impl Tiles {
         [self.across * self.size[0] + 2 * self.reach, rows * self.size[1] + 2 * self.reach]
     }
 
-    /// Sums a row of tiles, of 1, 2, 4 or a multiple of 8 rows, into rows of `stride` floats; `sources` has the reach as its margin.
-    pub fn sum(&self, arch: pulp::Arch, sources: &Plane<f32>, row: usize, stride: usize, out: &mut [f32]) {
+    /// Sums a row of tiles into rows of `stride` floats; `sources` have the reach as their margin.
+    pub fn sum(&self, arch: pulp::Arch, sources: [&Plane<f32>; 3], row: usize, stride: usize, out: [&mut [f32]; 3]) {
+        let [red, green, blue] = out;
+        let (width, most) = (self.size[0], red.len() / stride);
         for (tile, kernel) in self.kernels[row * self.across..][..self.across].iter().enumerate() {
-            for part in (0..self.size[1]).step_by(ROWS) {
-                let at = [tile * self.size[0] + self.reach, row * self.size[1] + part + self.reach];
-                let out = &mut out[part * stride + tile * self.size[0]..];
-                let width = self.size[0];
+            for part in (0..self.size[1].min(most)).step_by(ROWS) {
+                let at = [tile * width + self.reach, row * self.size[1] + part + self.reach];
+                let from = part * stride + tile * width;
+                let out = [&mut red[from..], &mut green[from..], &mut blue[from..]];
+                let below = part as f32 - 0.5 * (self.size[1] as f32 - 1.0);
+                let rows = most - part;
                 match self.size[1] {
-                    1 => arch.dispatch(Part::<1> { kernel, sources, at, width, stride, out }),
-                    2 => arch.dispatch(Part::<2> { kernel, sources, at, width, stride, out }),
-                    4 => arch.dispatch(Part::<4> { kernel, sources, at, width, stride, out }),
-                    _ => arch.dispatch(Part::<ROWS> { kernel, sources, at, width, stride, out }),
+                    1 => arch.dispatch(Part::<1> { kernel, sources, at, width, below, rows, stride, out }),
+                    2 => arch.dispatch(Part::<2> { kernel, sources, at, width, below, rows, stride, out }),
+                    _ => arch.dispatch(Part::<ROWS> { kernel, sources, at, width, below, rows, stride, out }),
                 }
             }
         }
@@ -124,8 +139,9 @@ pub(super) fn middle(tile: [usize; 2], size: [usize; 2]) -> [f64; 2] {
 impl Kernel {
     /// Around a target: rows from the middle up and down, and in each from where the last had its middle to both sides, for as long as the
     /// source is near enough.
-    fn new(model: &Model, wanted: &Wanted, target: [f64; 2]) -> Option<Self> {
+    fn new(model: &Model, wanted: &Wanted, target: [f64; 2], size: [usize; 2]) -> Option<Self> {
         let mut kernel = Self::default();
+        let slopes = Slopes::new(target, size);
         let centre = model.camera.point(target[0], target[1]);
         let source = |column: isize, row: isize| model.camera.point(target[0] + column as f64, target[1] + row as f64);
         for direction in [1isize, -1] {
@@ -140,10 +156,11 @@ impl Kernel {
                     break;
                 };
                 let [mut first, mut last] = [start; 2];
-                while near(first - 1) {
+                // On a wide field all of a row may be near, however far it goes on beyond the picture.
+                while first >= -(FARTHEST as isize) && near(first - 1) {
                     first -= 1;
                 }
-                while near(last + 1) {
+                while last <= FARTHEST as isize && near(last + 1) {
                     last += 1;
                 }
                 if step == FARTHEST || first < -(FARTHEST as isize) || last > FARTHEST as isize {
@@ -152,9 +169,7 @@ impl Kernel {
                 let next = 0.5 * (first + last) as f64;
                 (slope, middle) = (if step > 0 { next - middle } else { 0.0 }, next);
                 let start = kernel.taps.len();
-                kernel
-                    .taps
-                    .extend((first..=last).map(|column| wanted.missing(model, &centre, &source(column, row)) as f32));
+                kernel.taps.extend((first..=last).map(|column| slopes.tap(model, wanted, [column, row])));
                 kernel.runs.push(Run { column: first, row, start, end: kernel.taps.len() });
             }
         }
@@ -167,9 +182,11 @@ impl Kernel {
         for run in &mut mirror.runs {
             if sides[0] {
                 mirror.taps[run.start..run.end].reverse();
+                mirror.taps[run.start..run.end].iter_mut().for_each(|tap| tap[1] = -tap[1]);
                 run.column = 1 - run.column - (run.end - run.start) as isize;
             }
             if sides[1] {
+                mirror.taps[run.start..run.end].iter_mut().for_each(|tap| tap[2] = -tap[2]);
                 run.row = -run.row;
             }
         }
@@ -185,15 +202,58 @@ impl Kernel {
     }
 }
 
+/// Where a tile's kernel is looked at: in the middle, and on both sides of it along columns and rows.
+pub(super) struct Slopes {
+    middle: [f64; 2],
+    /// From the middle, in pixels.
+    steps: [f64; 2],
+}
+
+impl Slopes {
+    pub fn new(middle: [f64; 2], size: [usize; 2]) -> Self {
+        Self { middle, steps: size.map(|size| SLOPE_AT * 0.5 * (size as f64 - 1.0)) }
+    }
+
+    /// The small kernel's value for a source so many columns and rows away.
+    pub fn tap(&self, model: &Model, wanted: &Wanted, offset: [isize; 2]) -> Tap {
+        self.of(&model.camera, offset, |source, target| wanted.missing(model, target, source)).map(|value| value as f32)
+    }
+
+    /// A function of a source and its target in the middle, and its slopes.
+    pub fn of(&self, camera: &Camera, offset: [isize; 2], value: impl Fn(&Point, &Point) -> f64) -> [f64; 3] {
+        let at = |x: f64, y: f64| {
+            let target = [self.middle[0] + x, self.middle[1] + y];
+            let source = camera.point(target[0] + offset[0] as f64, target[1] + offset[1] as f64);
+            value(&source, &camera.point(target[0], target[1]))
+        };
+        let middle = at(0.0, 0.0);
+        let mut linear = [middle, 0.0, 0.0];
+        for side in [0, 1] {
+            let step = self.steps[side];
+            if step > 0.0 {
+                let [before, after] = [-step, step].map(|step| if side == 0 { at(step, 0.0) } else { at(0.0, step) });
+                linear[side + 1] = (after - before) / (2.0 * step);
+                // Half of what is curved, so that it is as much too high as too low.
+                linear[0] += 0.5 * (0.5 * (before + after) - middle);
+            }
+        }
+        linear
+    }
+}
+
 /// Some rows of a tile.
 struct Part<'a, const R: usize> {
     kernel: &'a Kernel,
-    sources: &'a Plane<f32>,
+    sources: [&'a Plane<f32>; 3],
     /// The first pixel's column and row among the sources.
     at: [usize; 2],
     width: usize,
+    /// From the tile's middle to the first row.
+    below: f32,
+    /// How many rows there are to be written.
+    rows: usize,
     stride: usize,
-    out: &'a mut [f32],
+    out: [&'a mut [f32]; 3],
 }
 
 impl<const R: usize> WithSimd for Part<'_, R> {
@@ -201,26 +261,61 @@ impl<const R: usize> WithSimd for Part<'_, R> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { kernel, sources, at, width, stride, out } = self;
+        let Self { kernel, sources, at, width, below, rows, stride, mut out } = self;
         let lanes = S::F32_LANES;
         for column in (0..width).step_by(lanes) {
-            let mut sums = [simd.splat_f32s(0.0); R];
+            // From the tile's middle, in columns.
+            let across: [f32; 64] = std::array::from_fn(|lane| (column + lane) as f32 - 0.5 * (width as f32 - 1.0));
+            let across = f32::vectors::<S>(&across)[0];
+            let mut sums = [[simd.splat_f32s(0.0); 3]; R];
             for run in &kernel.runs {
                 let taps = &kernel.taps[run.start..run.end];
                 let first = (at[0] + column).wrapping_add_signed(run.column);
                 let row = at[1].wrapping_add_signed(run.row);
-                let rows: [&[f32]; R] =
-                    std::array::from_fn(|index| &sources.row(row + index)[first..][..taps.len() + lanes - 1]);
-                for (index, tap) in taps.iter().enumerate() {
-                    let tap = simd.splat_f32s(*tap);
-                    for (sum, row) in sums.iter_mut().zip(rows) {
-                        let values = f32::vectors::<S>(&row[index..index + lanes]);
-                        *sum = simd.mul_add_e_f32s(tap, values[0], *sum);
+                let values: [[&[f32]; 3]; R] = std::array::from_fn(|index| {
+                    sources.map(|plane| &plane.row(row + index)[first..][..taps.len() + lanes - 1])
+                });
+                for (index, [value, slope, slant]) in taps.iter().enumerate() {
+                    let along = simd.mul_add_e_f32s(across, simd.splat_f32s(*slope), simd.splat_f32s(*value));
+                    let slant = simd.splat_f32s(*slant);
+                    for (row, (sums, values)) in sums.iter_mut().zip(values).enumerate() {
+                        let tap = simd.mul_add_e_f32s(simd.splat_f32s(below + row as f32), slant, along);
+                        for (sum, values) in sums.iter_mut().zip(values) {
+                            let values = f32::vectors::<S>(&values[index..index + lanes]);
+                            *sum = simd.mul_add_e_f32s(tap, values[0], *sum);
+                        }
                     }
                 }
             }
-            for (index, sum) in sums.into_iter().enumerate() {
-                f32::vectors_mut::<S>(&mut out[index * stride + column..][..lanes])[0] = sum;
+            for (row, sums) in sums.into_iter().enumerate().take(rows) {
+                for (sum, out) in sums.into_iter().zip(&mut out) {
+                    f32::vectors_mut::<S>(&mut out[row * stride + column..][..lanes])[0] = sum;
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::camera::Projection;
+    use super::*;
+
+    /// In a corner of the picture and of a tile, with a margin over what the middle alone would say.
+    #[test]
+    fn slopes_follow_the_geometry_over_a_tile() {
+        let camera = Camera { projection: Projection::Rectilinear, focal: 300.0, size: [320, 200] };
+        let size = [32, 16];
+        let centre = middle([0, 0], size);
+        let value = |source: &Point, target: &Point| source.chord(target).powi(-3) * source.solid_angle;
+        for offset in [[1, 0], [0, 1], [3, -2]] {
+            let [middle, across, down] = Slopes::new(centre, size).of(&camera, offset, value);
+            for at in [[0.0, 0.0], [31.0, 15.0], [0.0, 15.0]] {
+                let source = camera.point(at[0] + offset[0] as f64, at[1] + offset[1] as f64);
+                let wanted = value(&source, &camera.point(at[0], at[1]));
+                let found = middle + (at[0] - centre[0]) * across + (at[1] - centre[1]) * down;
+                let off = [found, middle].map(|found| (found / wanted - 1.0).abs());
+                assert!(off[0] < 5e-3 && off[0] < 0.2 * off[1].max(5e-3), "{offset:?} {at:?}: {off:?}");
             }
         }
     }

@@ -95,10 +95,13 @@ impl<T: Real> Pyramid<T> {
 
     /// Those of all lattices from the first.
     pub fn reduce_further(&mut self, arch: Arch) {
-        for level in 1..self.moments.len() {
-            let (below, above) = self.moments.split_at_mut(level);
-            reduce(arch, &below[level - 1], &NEXT, &mut above[0]);
-        }
+        (1..self.moments.len()).for_each(|level| self.reduce_to(arch, level));
+    }
+
+    /// Those of a lattice from the one before it.
+    pub fn reduce_to(&mut self, arch: Arch, level: usize) {
+        let (below, above) = self.moments.split_at_mut(level);
+        reduce(arch, &below[level - 1], &NEXT, &mut above[0]);
     }
 
     /// What the Gaussians of all lattices sum to, for each lattice's terms from lattice 1 on.
