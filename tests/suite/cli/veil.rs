@@ -272,6 +272,9 @@ fn what_no_gaussians_follow_is_transformed() {
     let [predicted, measured] = ["predicted", "measured"].map(|key| report["veil"]["error"][key].as_f64().unwrap());
     assert!(measured <= predicted && predicted <= 1e-6, "{report}");
     // On the sphere there is no such way yet.
-    place.text("fov.toml", "[veil]\npsf = \"table\"\ntable = \"ring.csv\"\nprojection = \"rectilinear\"\nscatter = 0.3\n");
+    place.text(
+        "fov.toml",
+        "[veil]\npsf = \"table\"\ntable = \"ring.csv\"\nprojection = \"rectilinear\"\nscatter = 0.3\n",
+    );
     place.vglare(&["apply", "in.exr", "-o", "out.exr", "--scene", "fov.toml"]).failed(2, &["projection"]);
 }
