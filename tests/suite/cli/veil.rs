@@ -190,7 +190,7 @@ fn each_colour_has_its_own_gaussians() {
 fn a_tolerance_that_nobody_asked_for_gives_way() {
     let place = Workplace::new();
     place.photo("in.exr");
-    let line = words("apply in.exr -o out.exr --lens none --veil cie --fov 50 --projection planar");
+    let line = words("apply in.exr -o out.exr --lens none --veil gaussian --width 0.1 --scatter 0.1");
     place.vglare(&[&line[..], &["--tolerance", "1e-8"]].concat()).failed(3, &["1.0e-8"]);
     let said = place.vglare(&[&line[..], &["--tolerance", "1e-8", "--allow-floor"]].concat()).succeeded().stdout();
     assert!(said.contains("instead of 1.0e-8"), "{said}");
