@@ -227,10 +227,10 @@ fn functions_are_shown_drawn_and_written() {
 #[test]
 fn a_picture_as_kernel_is_seen_as_it_lies_in_its_file() {
     let place = Workplace::new();
-    // No two pixels alike, and no way to turn it that leaves it the same; its centre is the third of five columns, the third of four rows.
-    let kernel = |column: usize, row: usize| [0, 1, 2].map(|channel| ((5 * row + column + 1) * (channel + 1)) as f32);
-    let pixels = (0..20).map(|at| kernel(at % 5, at / 5)).map(|[r, g, b]| [r, g, b, 1.0]).collect();
-    place.write("star.exr", &Photo::new(5, 4, pixels));
+    // No two pixels alike, and no way to turn it that leaves it the same; its centre is the fourth of seven columns, the third of four rows.
+    let kernel = |column: usize, row: usize| [0, 1, 2].map(|channel| ((7 * row + column + 1) * (channel + 1)) as f32);
+    let pixels = (0..28).map(|at| kernel(at % 7, at / 7)).map(|[r, g, b]| [r, g, b, 1.0]).collect();
+    place.write("star.exr", &Photo::new(7, 4, pixels));
     let mut photo = point(80, 50, 1.0);
     photo.pixels[50 * WIDTH + 80] = [1.0, 10.0, 100.0, 1.0];
     place.write("in.exr", &photo);
@@ -238,12 +238,12 @@ fn a_picture_as_kernel_is_seen_as_it_lies_in_its_file() {
                 --report report.json";
     place.vglare(&words(line)).succeeded();
     let veil = photo::read(&place.path("veil.exr")).unwrap();
-    // A mean energy of 1 over the channels: the sum of 1 to 20, twice.
-    let energy = 420.0;
+    // A mean energy of 1 over the channels: the sum of 1 to 28, twice.
+    let energy = 812.0;
     for row in 46..54 {
-        for column in 76..84 {
-            let (x, y) = ((column + 2usize).wrapping_sub(80), (row + 2usize).wrapping_sub(50));
-            let inside = (column, row) != (80, 50) && x < 5 && y < 4;
+        for column in 75..86 {
+            let (x, y) = ((column + 3usize).wrapping_sub(80), (row + 2usize).wrapping_sub(50));
+            let inside = (column, row) != (80, 50) && x < 7 && y < 4;
             let wanted = if inside { kernel(x, y) } else { [0.0; 3] };
             for (channel, light) in [1.0, 10.0, 100.0].into_iter().enumerate() {
                 let wanted = light * 0.4 * wanted[channel] / energy;
