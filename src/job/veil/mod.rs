@@ -5,6 +5,7 @@ mod measure;
 mod parts;
 mod planned;
 mod planning;
+mod seat;
 #[cfg(feature = "laboratory")]
 mod trials;
 
@@ -18,7 +19,7 @@ use crate::look::{Look, Veil as Wanted};
 use crate::photo::{Alpha, Photo, View};
 use crate::psf::Fault;
 use crate::scene::Emission;
-use crate::veil::{self, Geometry, Predicted};
+use crate::veil::{self, Predicted};
 use crate::{Error, Result};
 
 pub use account::{Ledger, NoSources, VeilError, Veiled};
@@ -29,6 +30,7 @@ pub use planned::VeilPlanned;
 #[cfg(feature = "laboratory")]
 pub(crate) use planning::plan_of;
 use planning::{Channel, Definition, Held};
+use seat::Seat;
 #[cfg(feature = "laboratory")]
 pub(crate) use trials::{Trial, trials};
 
@@ -43,8 +45,7 @@ pub(super) struct Cast {
 /// What is known of a veil before anything is summed.
 pub(super) struct Prepared {
     view: Option<View>,
-    geometry: Geometry,
-    size: [usize; 2],
+    seat: Seat,
     /// A plan and a kernel for all channels, or one for each.
     channels: Vec<Channel>,
     /// The tolerance that it is held to.
@@ -54,19 +55,18 @@ pub(super) struct Prepared {
 /// Plans the veil of a look for pixels of a frame, which is the photo's, or that of a photo made larger or smaller.
 fn prepared(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame, stages: &mut Stages) -> Result<Prepared> {
     check(look, wanted)?;
-    let (view, geometry, size) = seated(look, wanted, photo, frame)?;
-    let (channels, asked) =
-        stages.time("veil plan", || Held::new(look, wanted, &geometry, size).channels(wanted.psf()))?;
-    Ok(Prepared { view, geometry, size, channels, asked })
+    let (view, seat) = seated(look, wanted, photo, frame)?;
+    let (channels, asked) = stages.time("veil plan", || Held::new(look, wanted, &seat).channels(wanted.psf()))?;
+    Ok(Prepared { view, seat, channels, asked })
 }
 
-/// How the photo was seen, where the pixels of a frame lie, and how many there are.
-fn seated(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame) -> Result<(Option<View>, Geometry, [usize; 2])> {
+/// How the photo was seen, and where the pixels of a frame lie.
+fn seated(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame) -> Result<(Option<View>, Seat)> {
     let view = seen(look, wanted, photo)?.map(|view| view.resized(&photo.frame, frame));
     // A look that is made larger is so by its veil, too, where that is on the picture's plane.
     let enlarged = frame.in_units_of(frame.unit * look.size);
-    let geometry = wanted.geometry(&enlarged, view.as_ref()).map_err(told)?;
-    Ok((view, geometry, [frame.window.width as usize, frame.window.height as usize]))
+    let seat = Seat::new(wanted, &enlarged, view.as_ref())?;
+    Ok((view, seat))
 }
 
 /// How the veil of a look would be computed on the pixels of a frame, which is the photo's, or that of a photo made larger or
@@ -93,18 +93,22 @@ pub(super) fn cast(
     stages: &mut Stages,
 ) -> Result<Option<Cast>> {
     let Some(wanted) = look.veil.as_ref().filter(|_| look.strength != 0.0) else { return Ok(None) };
-    let Prepared { view, geometry, size, channels, asked } = prepared(look, wanted, photo, frame, stages)?;
+    let Prepared { view, seat, channels, asked } = prepared(look, wanted, photo, frame, stages)?;
     let weighed = weighed(photo);
-    let sources = weighed.as_ref().map_or(&photo.pixels, |pixels| pixels);
-    let sources = veil::Photo::rgba(sources.as_flattened(), size).map_err(failed)?;
-    let mut computed = stages.time("veil", || computed(&channels, &sources))?;
+    let pixels = weighed.as_ref().map_or(&photo.pixels, |pixels| pixels);
+    let stored = veil::Photo::rgba(pixels.as_flattened(), seat.stored).map_err(failed)?;
+    let filled = seat.filled(pixels);
+    let sources = veil::Photo::rgba(filled.as_flattened(), seat.size).map_err(failed)?;
+    let computed = stages.time("veil", || computed(&channels, &sources))?;
     let measured = stages.time("veil certify", || {
-        let pixels = looked_at(size, brightest(&sources), verify);
-        measured(&channels, &sources, &geometry, wanted.border, &computed, &pixels, asked)
+        let mut pixels = looked_at(seat.stored, brightest(&stored), verify);
+        pixels.iter_mut().for_each(|pixel| *pixel = seat.seen(*pixel));
+        measured(&channels, &sources, &seat.geometry, wanted.border, &computed, &pixels, asked)
             .map(|error| (error, pixels.len()))
     })?;
+    let mut computed = seat.cropped(computed);
     let strength = look.strength;
-    let loses = Loss::new(wanted, geometry, size, strength);
+    let loses = Loss::new(wanted, seat, strength);
     let scale = strength as f32;
     computed.planes.par_iter_mut().for_each(|plane| plane.iter_mut().for_each(|value| *value *= scale));
     let veil::Veil { planes, bad, dark, certified, .. } = computed;
@@ -120,9 +124,9 @@ pub(super) fn cast(
         scattered: wanted.psf().energies(),
         centre: wanted.psf().centres(),
         terms: terms(&channels),
-        notes: raised(asked, wanted.tolerance()).into_iter().chain(coarse(&loses, size)).collect(),
+        notes: raised(asked, wanted.tolerance()).into_iter().chain(coarse(&loses, seat.stored)).collect(),
         error: VeilError { asked, predicted, measured: measured.0, pixels: measured.1 },
-        ledger: ledger(&sources, &planes, &loses),
+        ledger: ledger(&stored, &planes, &loses),
         dark,
         no_sources: no_sources(bad),
     };

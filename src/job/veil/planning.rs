@@ -1,6 +1,6 @@
 //! How a veil is computed: the mixture of Gaussians, and the plan of each channel.
 
-use super::{failed, told};
+use super::{Seat, failed, told};
 use crate::choices::Border;
 #[cfg(feature = "laboratory")]
 use crate::frame::Frame;
@@ -57,9 +57,9 @@ pub(super) struct Held<'a> {
 }
 
 impl<'a> Held<'a> {
-    pub fn new(look: &Look, veil: &Wanted, geometry: &'a Geometry, size: [usize; 2]) -> Self {
+    pub fn new(look: &Look, veil: &Wanted, seat: &'a Seat) -> Self {
         Self {
-            pixels: Pixels { geometry, size, border: veil.border },
+            pixels: Pixels { geometry: &seat.geometry, size: seat.size, border: veil.border },
             asked: veil.tolerance(),
             // What nobody asked for need not be had.
             least: look.accuracy.allow_floor || !veil.is_held(),
