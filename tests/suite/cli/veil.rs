@@ -363,8 +363,9 @@ fn stored_pixels_are_seen_where_they_lie() {
         let out = f64::from(photo::read(&place.path("out.exr")).unwrap().pixels[row * columns + column][0]);
         assert!((light / (1e4 * area) - 1.0).abs() < 1e-9 && (kept / light / (out / 1e4) - 1.0).abs() < 1e-6);
     }
-    let frame = Frame { pixel_aspect: 2.0, ..Frame::full(4, 3) };
-    place.write("wide.exr", &Photo { frame, ..Photo::new(4, 3, vec![[1.0; 4]; 12]) });
+    let mut wide = Photo::new(4, 3, vec![[1.0; 4]; 12]);
+    wide.source.pixel_aspect = 2.0;
+    place.write("wide.exr", &wide);
     for veil in ["cie --fov 50", "gaussian --width 0.1 --scatter 0.1", "cie --fov 50 --projection planar"] {
         let line = [words("apply wide.exr -o no.exr --lens none --veil"), words(veil)].concat();
         place.vglare(&line).failed(2, &["square pixels", "2 times as wide as high"]);
