@@ -4,12 +4,13 @@ mod account;
 mod measure;
 mod planned;
 mod planning;
+mod summing;
 #[cfg(feature = "laboratory")]
 mod trials;
 
 use rayon::prelude::*;
 
-use super::Stages;
+use super::{Computer, Stages};
 use crate::certificate::Verify;
 use crate::choices::Normalize;
 use crate::frame::Frame;
@@ -27,6 +28,7 @@ pub use planned::VeilPlanned;
 #[cfg(feature = "laboratory")]
 pub(crate) use planning::plan_of;
 use planning::{Definition, at_least};
+use summing::{Summed, computed, summed};
 #[cfg(feature = "laboratory")]
 pub(crate) use trials::{Trial, trials};
 
@@ -86,6 +88,7 @@ pub(super) fn cast(
     photo: &Photo,
     frame: &Frame,
     verify: Verify,
+    computer: Option<&mut Computer>,
     stages: &mut Stages,
 ) -> Result<Option<Cast>> {
     let Some(wanted) = look.veil.as_ref().filter(|_| look.strength != 0.0) else { return Ok(None) };
@@ -93,7 +96,8 @@ pub(super) fn cast(
     let weighed = weighed(photo);
     let sources = weighed.as_ref().map_or(&photo.pixels, |pixels| pixels);
     let sources = veil::Photo::rgba(sources.as_flattened(), size).map_err(failed)?;
-    let mut computed = stages.time("veil", || computed(&channels, &sources))?;
+    let Summed { veil: mut computed, by, note } =
+        stages.time("veil", || summed(&channels, &sources, asked, computer))?;
     let measured = stages.time("veil certify", || {
         let pixels = looked_at(size, brightest(&sources), verify);
         measured(&channels, &sources, &geometry, wanted.border, &computed, &pixels, asked)
@@ -116,7 +120,8 @@ pub(super) fn cast(
         scattered: wanted.psf().energies(),
         centre: wanted.psf().centres(),
         terms: terms(&channels),
-        notes: raised(asked, wanted.tolerance()).into_iter().chain(coarse(&loses, size)).collect(),
+        computed_by: by,
+        notes: raised(asked, wanted.tolerance()).into_iter().chain(coarse(&loses, size)).chain(note).collect(),
         error: VeilError { asked, predicted, measured: measured.0, pixels: measured.1 },
         ledger: ledger(&sources, &planes, &loses),
         dark,
@@ -189,19 +194,6 @@ fn weighed(photo: &Photo) -> Option<Vec<[f32; 4]>> {
         };
         photo.pixels.par_iter().map(share).collect()
     })
-}
-
-/// The veil, each channel by its kernel.
-fn computed(channels: &[(Plan, Definition)], sources: &veil::Photo<'_>) -> Result<veil::Veil> {
-    let mut all =
-        channels.iter().map(|(plan, _)| plan.evaluate(sources).map_err(failed)).collect::<Result<Vec<_>>>()?;
-    let mut veil = all.remove(0);
-    for (channel, mut other) in (1..).zip(all) {
-        veil.planes[channel] = std::mem::take(&mut other.planes[channel]);
-        (veil.dark[channel], veil.lonely[channel]) = (other.dark[channel], other.lonely[channel]);
-        veil.certified[channel] = other.certified[channel];
-    }
-    Ok(veil)
 }
 
 /// Gaussians of the mixture.
