@@ -2,6 +2,7 @@
 
 mod account;
 mod measure;
+mod parts;
 mod planned;
 mod planning;
 mod summing;
@@ -18,16 +19,17 @@ use crate::look::{Look, Veil as Wanted};
 use crate::photo::{Alpha, Photo, View};
 use crate::psf::Fault;
 use crate::scene::Emission;
-use crate::veil::{self, Geometry, Plan, Predicted};
+use crate::veil::{self, Geometry, Predicted};
 use crate::{Error, Result};
 
 pub use account::{Ledger, NoSources, VeilError, Veiled};
 use account::{Loss, ledger, no_sources};
 use measure::{brightest, looked_at, measured};
+pub use parts::VeilParts;
 pub use planned::VeilPlanned;
 #[cfg(feature = "laboratory")]
 pub(crate) use planning::plan_of;
-use planning::{Definition, at_least};
+use planning::{Channel, Definition, Held};
 use summing::{Summed, computed, summed};
 #[cfg(feature = "laboratory")]
 pub(crate) use trials::{Trial, trials};
@@ -46,7 +48,7 @@ pub(super) struct Prepared {
     geometry: Geometry,
     size: [usize; 2],
     /// A plan and a kernel for all channels, or one for each.
-    channels: Vec<(Plan, Definition)>,
+    channels: Vec<Channel>,
     /// The tolerance that it is held to.
     asked: f64,
 }
@@ -54,17 +56,19 @@ pub(super) struct Prepared {
 /// Plans the veil of a look for pixels of a frame, which is the photo's, or that of a photo made larger or smaller.
 fn prepared(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame, stages: &mut Stages) -> Result<Prepared> {
     check(look, wanted)?;
+    let (view, geometry, size) = seated(look, wanted, photo, frame)?;
+    let (channels, asked) =
+        stages.time("veil plan", || Held::new(look, wanted, &geometry, size).channels(wanted.psf()))?;
+    Ok(Prepared { view, geometry, size, channels, asked })
+}
+
+/// How the photo was seen, where the pixels of a frame lie, and how many there are.
+fn seated(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame) -> Result<(Option<View>, Geometry, [usize; 2])> {
     let view = seen(look, wanted, photo)?.map(|view| view.resized(&photo.frame, frame));
     // A look that is made larger is so by its veil, too, where that is on the picture's plane.
     let enlarged = frame.in_units_of(frame.unit * look.size);
     let geometry = wanted.geometry(&enlarged, view.as_ref()).map_err(told)?;
-    let size = [frame.window.width as usize, frame.window.height as usize];
-    let (channels, asked) = stages.time("veil plan", || {
-        // What nobody asked for need not be had.
-        let least = look.accuracy.allow_floor || !wanted.is_held();
-        at_least(wanted, &geometry, size, wanted.tolerance(), least)
-    })?;
-    Ok(Prepared { view, geometry, size, channels, asked })
+    Ok((view, geometry, [frame.window.width as usize, frame.window.height as usize]))
 }
 
 /// How the veil of a look would be computed on the pixels of a frame, which is the photo's, or that of a photo made larger or
@@ -197,11 +201,11 @@ fn weighed(photo: &Photo) -> Option<Vec<[f32; 4]>> {
 }
 
 /// Gaussians of the mixture.
-fn terms(channels: &[(Plan, Definition)]) -> usize {
+fn terms(channels: &[Channel]) -> usize {
     channels.iter().map(|(_, definition)| definition.terms()).max().unwrap_or(0)
 }
 
-fn predicted(channels: &[(Plan, Definition)]) -> Predicted {
+fn predicted(channels: &[Channel]) -> Predicted {
     let worst = channels.iter().map(|(plan, _)| plan.predicted()).max_by(|a, b| a.bound.total_cmp(&b.bound));
     worst.expect("there is a kernel").clone()
 }
