@@ -41,6 +41,39 @@ impl Veil {
         })
     }
 
+    /// The same as another section says it. No file is read again for a scatter, a projection, a border or a tolerance.
+    ///
+    /// # Errors
+    /// Those of [`Veil::new`].
+    pub fn changed(&self, section: &VeilSection) -> Result<Self, psf::Fault> {
+        let unscattered = |parameters: &Parameters| Parameters { scatter: None, ..parameters.clone() };
+        let of = |function| Self { function, ..self.saying(section) };
+        if section.parameters == self.parameters {
+            return Ok(of(self.function.clone()));
+        }
+        match section.parameters.scatter {
+            Some(scatter) if unscattered(&section.parameters) == unscattered(&self.parameters) => {
+                self.function.scattering(scatter).map(of)
+            }
+            _ => VeilFunction::new(&section.parameters).map(of),
+        }
+    }
+
+    /// What a section says beside the function.
+    fn saying(&self, section: &VeilSection) -> Self {
+        let &VeilSection { ref parameters, fov: _, projection, border, tolerance } = section;
+        let border = border.unwrap_or_default();
+        Self { parameters: parameters.clone(), projection, border, tolerance, ..self.clone() }
+    }
+
+    /// The same of a function that scatters all of the light, and what it is multiplied by to be this one.
+    pub(crate) fn of_all_light(&self) -> (Self, f64) {
+        let function = self.function.scattering(1.0).unwrap_or_else(|_| self.function.clone());
+        let parameters = Parameters { scatter: Some(1.0), ..self.parameters.clone() };
+        let share = self.psf().energy() / function.psf().energy();
+        (Self { parameters, function, adds: false, ..self.clone() }, share)
+    }
+
     /// The same, added to the photo or not.
     #[must_use]
     pub fn adding(self, adds: bool) -> Self {
