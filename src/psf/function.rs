@@ -7,6 +7,7 @@ use super::hankel;
 use super::integral::integral_from_zero;
 use super::kernel::Kernel;
 use super::parameters::Name;
+use super::parts::Part;
 use super::plane::{Abg, Camera, Term};
 use super::table::Table;
 
@@ -27,13 +28,17 @@ pub(super) enum Function {
     Cie(Observer),
     Cie135(Observer),
     Spencer(Luminance),
-    StilesHolladay { age: f64 },
+    StilesHolladay {
+        age: f64,
+    },
     Gaussian(Vec<Term>),
     Mixture(Vec<Term>),
     Abg(Abg),
     Table(Table),
     Camera,
     Kernel(Kernel),
+    /// What others are sums of, and which.
+    Part(Part, Name),
 }
 
 impl Function {
@@ -49,6 +54,7 @@ impl Function {
             Self::Table(_) => Name::Table,
             Self::Camera => Name::Camera,
             Self::Kernel(_) => Name::Kernel,
+            Self::Part(_, of) => *of,
         }
     }
 
@@ -67,6 +73,7 @@ impl Function {
             Self::Table(table) => table.value(at),
             Self::Camera => Camera.value(at),
             Self::Kernel(kernel) => kernel.ring(at),
+            Self::Part(part, _) => part.value(at),
         }
     }
 
@@ -75,13 +82,16 @@ impl Function {
         match self {
             Self::Cie(observer) => [eye::cie_constant(*observer), 0.0],
             Self::Cie135(observer) => eye::cie135_moments(*observer),
+            Self::Part(part, _) => part.moments(),
             _ => [0.0; 2],
         }
     }
 
     pub fn unit(&self) -> Unit {
         match self {
-            Self::Cie(_) | Self::Cie135(_) | Self::Spencer(_) | Self::StilesHolladay { .. } => Unit::Degrees,
+            Self::Cie(_) | Self::Cie135(_) | Self::Spencer(_) | Self::StilesHolladay { .. } | Self::Part(..) => {
+                Unit::Degrees
+            }
             Self::Gaussian(_) | Self::Mixture(_) | Self::Abg(_) | Self::Table(_) | Self::Camera => Unit::Look,
             Self::Kernel(_) => Unit::Pixels,
         }
@@ -91,7 +101,8 @@ impl Function {
     pub fn end(&self) -> f64 {
         match self {
             Self::Cie(_) | Self::Cie135(_) | Self::StilesHolladay { .. } => eye::CIE_END,
-            Self::Spencer(_) => eye::SPENCER_END,
+            Self::Spencer(_) | Self::Part(_, Name::Spencer) => eye::SPENCER_END,
+            Self::Part(..) => eye::CIE_END,
             Self::Gaussian(_) | Self::Mixture(_) | Self::Camera => f64::INFINITY,
             Self::Abg(abg) => abg.end,
             Self::Table(table) => table.end(),
@@ -104,6 +115,7 @@ impl Function {
         match self {
             Self::Cie(_) => eye::CIE_FROM,
             Self::StilesHolladay { .. } => eye::STILES_FROM,
+            Self::Part(part, _) => part.flat_within(),
             _ => 0.0,
         }
     }
@@ -134,6 +146,7 @@ impl Function {
             Self::Table(table) => table.first(),
             Self::Camera => Camera::WIDTHS[0],
             Self::Kernel(_) => 1.0,
+            Self::Part(part, _) => part.scale(),
         }
     }
 
@@ -180,6 +193,7 @@ impl Function {
         let square = 1_f64.to_radians().powi(2);
         match self {
             Self::Cie135(observer) => square * eye::cie135(*observer).iter().map(|part| part.transform(q)).sum::<f64>(),
+            Self::Part(part, _) => square * part.transform(q),
             Self::Gaussian(terms) | Self::Mixture(terms) => {
                 terms.iter().map(|term| term.energy() * (-0.5 * (term.sigma * q).powi(2)).exp()).sum()
             }

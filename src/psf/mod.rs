@@ -10,12 +10,14 @@
 //! | `function` | the functions by one interface, unscaled |
 //! | `eye` | those of the eye, in degrees |
 //! | `plane`, `table`, `kernel` | those of a picture, in the look's unit or pixels |
+//! | `basis`, `parts` | functions as weighted sums of functions that do not change with age, pigment or light |
 //! | `integral`, `hankel` | energies and transforms |
 //! | `fit`, `observers` | mixtures of Gaussians within a tolerance, and of one set of widths for all ages |
 //! | `chords` | those of the eye by powers of the chord, for the sphere |
 //! | `tail`, `chord` | far from the centre by powers of the angle, and these by powers of the chord |
 //! | `profile` | all of it by rows, for plots and tables |
 
+mod basis;
 mod chord;
 mod chords;
 mod eye;
@@ -27,6 +29,7 @@ mod integral;
 mod kernel;
 mod observers;
 mod parameters;
+mod parts;
 mod plane;
 mod profile;
 mod table;
@@ -34,6 +37,7 @@ mod tail;
 #[cfg(test)]
 mod tests;
 
+pub use basis::Basis;
 pub use chord::{ChordSeries, MOST_POWERS};
 pub use chords::ChordPowers;
 pub use eye::{AGES, Luminance, Observer, PIGMENTS};
@@ -49,6 +53,7 @@ pub use table::Table;
 pub use tail::Tail;
 
 use function::Function;
+use parts::Part;
 
 /// A point-spread function.
 ///
@@ -273,12 +278,15 @@ impl Psf {
     /// The mixture of a function that needs no fit.
     fn known_mixture(&self, range: [f64; 2]) -> Result<Option<Mixture>, Fault> {
         Ok(match &self.function {
-            Function::Kernel(_) => return Err(Fault::new("kernel", "a picture is no mixture of round Gaussians")),
+            Function::Kernel(_) => {
+                return Err(Fault::new("kernel", "a picture is no mixture of round Gaussians"));
+            }
             Function::Gaussian(terms) | Function::Mixture(terms) => {
                 let mut terms = terms.clone();
                 terms.sort_by(|a, b| a.sigma.total_cmp(&b.sigma));
                 Some(Mixture { terms, constant: 0.0, quadratic: 0.0, error: 0.0, range }.scaled(self.scale))
             }
+            Function::Part(Part::Constant, _) => Some(Mixture::of_constant(self.centre(), range)),
             // None of what is left; of a function in degrees, nothing is.
             _ if range[0] >= self.function.reach() => Some(Mixture { error: 1.0, ..Mixture::of_constant(0.0, range) }),
             _ if range[1] <= self.flat_within() => Some(Mixture::of_constant(self.centre(), range)),

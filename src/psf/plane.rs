@@ -35,7 +35,7 @@ impl Term {
     }
 
     /// With unit energy on the plane times `share`.
-    fn of_energy(sigma: f64, share: f64, tint: [f64; 3]) -> Self {
+    pub(super) fn of_energy(sigma: f64, share: f64, tint: [f64; 3]) -> Self {
         Self { sigma, weight: share / (TAU * sigma * sigma), tint }
     }
 
@@ -121,6 +121,11 @@ impl Abg {
             }
         };
         Ok(Self { a, b, g, end })
+    }
+
+    /// The same with the factor 1, and what it has for that.
+    pub fn over_its_factor(self) -> (Self, f64) {
+        (Self { a: 1.0, ..self }, self.a)
     }
 
     /// Its value at the radius r.
