@@ -3,7 +3,7 @@
 use crate::choices::{Border, Projection};
 use crate::frame::Frame;
 use crate::photo::View;
-use crate::psf::{self, Parameters, Psf, Unit};
+use crate::psf::{self, Basis, Parameters, Psf, Unit};
 use crate::scene::{VeilFunction, VeilSection};
 use crate::veil::Geometry;
 
@@ -66,12 +66,15 @@ impl Veil {
         Self { parameters: parameters.clone(), projection, border, tolerance, ..self.clone() }
     }
 
-    /// The same of a function that scatters all of the light, and what it is multiplied by to be this one.
-    pub(crate) fn of_all_light(&self) -> (Self, f64) {
-        let function = self.function.scattering(1.0).unwrap_or_else(|_| self.function.clone());
-        let parameters = Parameters { scatter: Some(1.0), ..self.parameters.clone() };
-        let share = self.psf().energy() / function.psf().energy();
-        (Self { parameters, function, adds: false, ..self.clone() }, share)
+    /// Veils of functions that scatter all of the light, at most `most`, and what each is multiplied by, RGB, so that their sum is this
+    /// one: see [`psf::Basis`]. What changes nothing but the multiples leaves them as they are.
+    pub(crate) fn parts(&self, most: usize) -> (Vec<Self>, Vec<[f64; 3]>) {
+        let Basis { parts, weights } = self.psf().basis(most);
+        let part = |psf: Psf| {
+            let (parameters, function) = (Parameters::new(psf.name()), VeilFunction::from(psf));
+            Self { parameters, function, adds: false, ..self.clone() }
+        };
+        (parts.into_iter().map(part).collect(), weights)
     }
 
     /// The same, added to the photo or not.

@@ -50,7 +50,7 @@ impl VeilFunction {
     /// # Errors
     /// A [`psf::Fault`], which names the key.
     pub fn new(parameters: &Parameters) -> Result<Self, psf::Fault> {
-        parameters.function(table, kernel).map(|psf| Self(Arc::new(psf)))
+        parameters.function(table, kernel).map(Self::from)
     }
 
     /// It.
@@ -63,7 +63,13 @@ impl VeilFunction {
     /// # Errors
     /// Those of [`Psf::scattering`].
     pub fn scattering(&self, scatter: f64) -> Result<Self, psf::Fault> {
-        Ok(Self(Arc::new(self.psf().clone().scattering(scatter)?)))
+        self.psf().clone().scattering(scatter).map(Self::from)
+    }
+}
+
+impl From<Psf> for VeilFunction {
+    fn from(psf: Psf) -> Self {
+        Self(Arc::new(psf))
     }
 }
 

@@ -14,7 +14,7 @@ use super::files::{apply_with, click};
 use super::*;
 
 fn section(parameters: Parameters) -> VeilSection {
-    VeilSection { parameters, fov: None, projection: None, border: None, tolerance: None }
+    VeilSection { parameters, fov: None, projection: None, border: None, tolerance: Some(1e-3) }
 }
 
 fn cie(age: f64) -> Parameters {
@@ -107,13 +107,21 @@ fn the_window_shows_the_veil_that_apply_lays_over_the_photo() {
     };
     // Light that is taken from the lamp is composited at every pixel of the photo.
     let taken = Look { mix: Mix::Energy, strength: 0.5, ..with_veil(cie(75.0)) };
-    let looks = [with_veil(cie(25.0)), with_veil(cie(75.0)), eye, added, with_veil(tinted), taken, plain];
-    for (at, look) in looks.into_iter().enumerate() {
-        let has_veil = look.veil.is_some();
+    // How many are summed for each, one after the other.
+    let looks = [
+        (with_veil(cie(25.0)), 1),
+        (with_veil(cie(75.0)), 0),
+        (eye, 1),
+        (added, 1),
+        (with_veil(tinted), 1),
+        (taken, 1),
+        (plain, 0),
+    ];
+    for (at, (look, summed)) in looks.into_iter().enumerate() {
         let before = session.veils();
         session.take(look);
         assert_eq!(session.app.problem(), None, "look {at}");
-        assert_eq!(session.veils() - before, u64::from(has_veil), "look {at}");
+        assert_eq!(session.veils() - before, summed, "look {at}");
         session.app.save_look(&path("look.toml"));
         apply_with(&path("room.exr"), &path("out.exr"), &path("look.toml"), &path("glare.exr"));
         for (shows, name) in [(Shows::Picture, "out.exr"), (Shows::Glare, "glare.exr"), (Shows::Photo, "room.exr")] {
@@ -124,7 +132,7 @@ fn the_window_shows_the_veil_that_apply_lays_over_the_photo() {
         }
         session.app.document_mut().unwrap().viewing.shows = Shows::Picture;
         session.settle();
-        assert_eq!(session.veils() - before, u64::from(has_veil), "the glare alone is no other veil");
+        assert_eq!(session.veils() - before, summed, "the glare alone is no other veil");
         for name in ["look.toml", "out.exr", "glare.exr"] {
             std::fs::remove_file(path(name)).unwrap();
         }
@@ -132,7 +140,7 @@ fn the_window_shows_the_veil_that_apply_lays_over_the_photo() {
 }
 
 #[test]
-fn strength_scatter_and_kept_light_cost_a_composite_and_no_veil() {
+fn strength_scatter_age_and_pigment_cost_a_composite_and_no_veil() {
     let (_folder, mut session) = in_a_folder();
     session.take(with_veil(cie(25.0)));
     let wall = session.at(DVec2::new(1.2, 0.0));
@@ -144,6 +152,8 @@ fn strength_scatter_and_kept_light_cost_a_composite_and_no_veil() {
     changes.push(Look { strength: 1.5, ..look.clone() });
     changes.push(with_veil(Parameters { scatter: Some(0.1), ..cie(25.0) }));
     changes.push(with_veil(Parameters { scatter: Some(0.8), ..cie(25.0) }));
+    changes.push(with_veil(cie(90.0)));
+    changes.push(with_veil(Parameters { pigment: Some(1.2), ..cie(120.0) }));
     for change in changes {
         session.app.document_mut().unwrap().look = change;
         session.frame(Vec::new());
