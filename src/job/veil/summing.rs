@@ -5,7 +5,7 @@ use super::planning::Channel;
 use crate::choices::Processor;
 use crate::job::Computer;
 use crate::plan::CostModel;
-use crate::veil::{Photo, Plan, Veil};
+use crate::veil::{Photo, Veil};
 use crate::{Error, Result};
 
 /// What a pixel costs the CPU beside its multiply-adds, in these: its passage up and down the lattices.
@@ -89,9 +89,10 @@ fn joined(mut all: Vec<Veil>) -> Result<Veil> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::veil::{Border, Gaussian, Geometry, Kernel, Mixture};
+    use crate::job::veil::planning::Definition;
+    use crate::veil::{Border, Gaussian, Geometry, Kernel, Mixture, Plan};
 
-    fn planned(geometry: Geometry, terms: &[[f64; 2]]) -> (Plan, Definition) {
+    fn planned(geometry: Geometry, terms: &[[f64; 2]]) -> Channel {
         let terms = terms.iter().map(|&[sigma, weight]| Gaussian { sigma, weight }).collect();
         let kernel = Kernel::from_mixture(Mixture { terms, ..Mixture::default() }).expect("a kernel");
         let plan = Plan::new(&geometry, &kernel, [160, 90], Border::None, 1e-2).expect("a plan");
