@@ -18,6 +18,9 @@ pub(crate) const SAMPLES: Binding = ("BINDING_SAMPLES", 2);
 pub(crate) const DIRECT: Binding = ("BINDING_DIRECT", 4);
 pub(crate) const FEW_GHOSTS: Binding = ("BINDING_FEW_GHOSTS", 3);
 
+/// The taps of a veil's pass.
+pub(crate) const TAPS: Binding = ("BINDING_TAPS", 5);
+
 /// Shader storage blocks.
 pub(crate) const GHOSTS: Binding = ("BINDING_GHOSTS", 0);
 pub(crate) const PARTIALS: Binding = ("BINDING_PARTIALS", 1);
@@ -64,19 +67,24 @@ pub(crate) const PICTURE: Binding = ("UNIT_PICTURE", 14);
 /// What `local` draws on.
 pub(crate) const CANVAS: Binding = ("UNIT_CANVAS", 15);
 
+/// The first of the layers that are laid over the photo, and how many there are at most.
+pub(crate) const OVERLAY: Binding = ("UNIT_OVERLAY", 16);
+pub(crate) const OVERLAY_LAYERS: usize = 4;
+
 /// The last of the units.
-pub(crate) const LAST_UNIT: u32 = CANVAS.1;
+pub(crate) const LAST_UNIT: u32 = OVERLAY.1 + OVERLAY_LAYERS as u32 - 1;
 
 /// Pixels along a side of the largest square that is drawn as a point.
 pub(crate) const LARGEST_POINT: i32 = 64;
 
 /// Every binding, for the head of every shader.
-pub(crate) const BINDINGS: [Binding; 33] = [
+pub(crate) const BINDINGS: [Binding; 35] = [
     PASS,
     EVALUATOR,
     SAMPLES,
     FEW_GHOSTS,
     DIRECT,
+    TAPS,
     GHOSTS,
     PARTIALS,
     SPECTRUM,
@@ -105,6 +113,7 @@ pub(crate) const BINDINGS: [Binding; 33] = [
     FOLDED,
     PICTURE,
     CANVAS,
+    OVERLAY,
 ];
 
 /// How a value of the field becomes glare: as it is, clamped to 0..1, or stretched to 0..1 by the range.
@@ -126,7 +135,7 @@ pub(crate) const PROFILE_HALVINGS: u32 = 13;
 
 /// Numbers that passes and their shaders have to agree on, for the head of every shader: work groups, what is done in one
 /// round of a loop, and what else a shader counts by.
-pub(crate) const NUMBERS: [Binding; 23] = [
+pub(crate) const NUMBERS: [Binding; 26] = [
     NORMALIZE_NONE,
     NORMALIZE_CLAMP,
     NORMALIZE_MINMAX,
@@ -150,6 +159,9 @@ pub(crate) const NUMBERS: [Binding; 23] = [
     ("SAMPLE_VECTORS", super::coefficients::BLOCK as u32),
     ("GRAF_LANES", super::graf::LANES),
     ("PRECISION_GROUP", super::precision::GROUP),
+    ("VEIL_TAPS", super::veil::MOST_TAPS as u32),
+    ("VEIL_PERIOD", super::veil::PERIOD as u32),
+    ("VEIL_NEAR_ROWS", super::veil::NEAR_ROWS as u32),
 ];
 
 /// One ghost as the spectrum's shader reads it.

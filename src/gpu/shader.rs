@@ -81,6 +81,7 @@ const SOURCES: &[(&str, &str)] = &sources![
     "shared/emission.glsl",
     "shared/knots.glsl",
     "shared/normalized.glsl",
+    "shared/overlay.glsl",
     "shared/phase.glsl",
     "shared/shapes.glsl",
     "shared/sine.glsl",
@@ -93,6 +94,9 @@ const SOURCES: &[(&str, &str)] = &sources![
     "spectrum_sum.comp",
     "strips.frag",
     "strips_double.comp",
+    "veil/along.frag",
+    "veil/down.frag",
+    "veil/pixels.frag",
     "view.frag",
 ];
 

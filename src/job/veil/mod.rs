@@ -1,22 +1,23 @@
 //! The veil of a photo: planned, computed, held against its definition, and what it does to the picture.
 
 mod account;
+mod layers;
 mod measure;
-mod parts;
 mod planned;
 mod planning;
 mod seat;
+mod summing;
 #[cfg(feature = "laboratory")]
 mod trials;
 
 use rayon::prelude::*;
 
-use super::Stages;
+use super::{Computer, Stages};
 use crate::certificate::Verify;
 use crate::choices::Normalize;
 use crate::frame::Frame;
 use crate::look::{Look, Veil as Wanted};
-use crate::photo::{Alpha, Photo, View};
+use crate::photo::{Photo, View};
 use crate::psf::Fault;
 use crate::scene::Emission;
 use crate::veil::{self, Predicted};
@@ -24,13 +25,14 @@ use crate::{Error, Result};
 
 pub use account::{Ledger, NoSources, VeilError, Veiled};
 use account::{Loss, ledger, no_sources};
+pub use layers::{MOST_LAYERS, VeilLayers, VeilSums};
 use measure::{brightest, looked_at, measured};
-pub use parts::VeilParts;
 pub use planned::VeilPlanned;
 #[cfg(feature = "laboratory")]
 pub(crate) use planning::plan_of;
 use planning::{Channel, Definition, Held};
 use seat::Seat;
+use summing::{Summed, computed, summed};
 #[cfg(feature = "laboratory")]
 pub(crate) use trials::{Trial, trials};
 
@@ -56,11 +58,12 @@ pub(super) struct Prepared {
 fn prepared(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame, stages: &mut Stages) -> Result<Prepared> {
     check(look, wanted)?;
     let (view, seat) = seated(look, wanted, photo, frame)?;
-    let (channels, asked) = stages.time("veil plan", || Held::new(look, wanted, &seat).channels(wanted.psf()))?;
+    let held = Held::new(look, wanted);
+    let (channels, asked) = stages.time("veil plan", || held.channels(wanted.psf(), seat.pixels(wanted.border)))?;
     Ok(Prepared { view, seat, channels, asked })
 }
 
-/// How the photo was seen, and where the pixels of a frame lie.
+/// How a photo was seen, where that matters, and where the pixels of a frame lie for a veil.
 fn seated(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame) -> Result<(Option<View>, Seat)> {
     let view = seen(look, wanted, photo)?.map(|view| view.resized(&photo.frame, frame));
     // A look that is made larger is so by its veil, too, where that is on the picture's plane.
@@ -90,16 +93,17 @@ pub(super) fn cast(
     photo: &Photo,
     frame: &Frame,
     verify: Verify,
+    computer: Option<&mut Computer>,
     stages: &mut Stages,
 ) -> Result<Option<Cast>> {
     let Some(wanted) = look.veil.as_ref().filter(|_| look.strength != 0.0) else { return Ok(None) };
     let Prepared { view, seat, channels, asked } = prepared(look, wanted, photo, frame, stages)?;
-    let weighed = weighed(photo);
-    let pixels = weighed.as_ref().map_or(&photo.pixels, |pixels| pixels);
+    let weighed = weighed(Emission::of(photo), &photo.pixels);
+    let pixels = weighed.as_ref().unwrap_or(&photo.pixels);
     let stored = veil::Photo::rgba(pixels.as_flattened(), seat.stored).map_err(failed)?;
     let filled = seat.filled(pixels);
     let sources = veil::Photo::rgba(filled.as_flattened(), seat.size).map_err(failed)?;
-    let computed = stages.time("veil", || computed(&channels, &sources))?;
+    let Summed { veil: computed, by, note } = stages.time("veil", || summed(&channels, &sources, asked, computer))?;
     let measured = stages.time("veil certify", || {
         let mut pixels = looked_at(seat.stored, brightest(&stored), verify);
         pixels.iter_mut().for_each(|pixel| *pixel = seat.seen(*pixel));
@@ -124,7 +128,8 @@ pub(super) fn cast(
         scattered: wanted.psf().energies(),
         centre: wanted.psf().centres(),
         terms: terms(&channels),
-        notes: raised(asked, wanted.tolerance()).into_iter().chain(coarse(&loses, seat.stored)).collect(),
+        computed_by: by,
+        notes: raised(asked, wanted.tolerance()).into_iter().chain(coarse(&loses, seat.stored)).chain(note).collect(),
         error: VeilError { asked, predicted, measured: measured.0, pixels: measured.1 },
         ledger: ledger(&stored, &planes, &loses),
         dark,
@@ -187,29 +192,15 @@ fn failed(error: veil::Error) -> Error {
     }
 }
 
-/// The photo's pixels by their share of the light, where straight alpha makes that another than all.
-fn weighed(photo: &Photo) -> Option<Vec<[f32; 4]>> {
-    (photo.source.alpha == Alpha::Straight).then(|| {
-        let emission = Emission::of(photo);
+/// Pixels by their share of the light, where straight alpha makes that another than all.
+fn weighed(emission: Emission, pixels: &[[f32; 4]]) -> Option<Vec<[f32; 4]>> {
+    emission.straight.then(|| {
         let share = |&pixel: &[f32; 4]| {
             let share = emission.share(&pixel);
             pixel.map(|value| value * share)
         };
-        photo.pixels.par_iter().map(share).collect()
+        pixels.par_iter().map(share).collect()
     })
-}
-
-/// The veil, each channel by its kernel.
-fn computed(channels: &[Channel], sources: &veil::Photo<'_>) -> Result<veil::Veil> {
-    let mut all =
-        channels.iter().map(|(plan, _)| plan.evaluate(sources).map_err(failed)).collect::<Result<Vec<_>>>()?;
-    let mut veil = all.remove(0);
-    for (channel, mut other) in (1..).zip(all) {
-        veil.planes[channel] = std::mem::take(&mut other.planes[channel]);
-        (veil.dark[channel], veil.lonely[channel]) = (other.dark[channel], other.lonely[channel]);
-        veil.certified[channel] = other.certified[channel];
-    }
-    Ok(veil)
 }
 
 /// Gaussians of the mixture.

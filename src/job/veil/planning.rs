@@ -1,6 +1,6 @@
 //! How a veil is computed: the mixture of Gaussians, and the plan of each channel.
 
-use super::{Seat, failed, told};
+use super::{failed, told};
 use crate::choices::Border;
 #[cfg(feature = "laboratory")]
 use crate::frame::Frame;
@@ -48,18 +48,16 @@ pub(super) struct Pixels<'a> {
 }
 
 /// What a look holds its veil to.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Held<'a> {
-    pixels: Pixels<'a>,
-    asked: f64,
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Held {
+    pub asked: f64,
     /// Whether the lowest that can be had will do.
     least: bool,
 }
 
-impl<'a> Held<'a> {
-    pub fn new(look: &Look, veil: &Wanted, seat: &'a Seat) -> Self {
+impl Held {
+    pub fn new(look: &Look, veil: &Wanted) -> Self {
         Self {
-            pixels: Pixels { geometry: &seat.geometry, size: seat.size, border: veil.border },
             asked: veil.tolerance(),
             // What nobody asked for need not be had.
             least: look.accuracy.allow_floor || !veil.is_held(),
@@ -68,20 +66,20 @@ impl<'a> Held<'a> {
 
     /// How the veil of a function is computed to the tolerance; or, where that will do, to the lowest that can be had, and which
     /// that is.
-    pub fn channels(&self, psf: &Psf) -> Result<(Vec<Channel>, f64)> {
+    pub fn channels(self, psf: &Psf, pixels: Pixels) -> Result<(Vec<Channel>, f64)> {
         // A looser mixture has a floor of its own.
         const TRIES: u32 = 4;
         const MORE: f64 = 1.05;
         let mut tolerance = self.asked;
         for _ in 0..TRIES {
-            match channels(psf, self.pixels, tolerance) {
+            match channels(psf, pixels, tolerance) {
                 Err(Error::ToleranceBelowFloor { floor, .. }) if self.least && MORE * floor < 1.0 => {
                     tolerance = MORE * floor.max(tolerance);
                 }
                 planned => return Ok((planned?, tolerance)),
             }
         }
-        channels(psf, self.pixels, tolerance).map(|planned| (planned, tolerance))
+        channels(psf, pixels, tolerance).map(|planned| (planned, tolerance))
     }
 }
 

@@ -8,7 +8,9 @@ use std::borrow::Cow;
 
 use rayon::prelude::*;
 
+use super::planning::Pixels;
 use super::told;
+use crate::choices::Border;
 use crate::frame::Frame;
 use crate::look::Veil as Wanted;
 use crate::photo::View;
@@ -79,6 +81,11 @@ impl Seat {
             limits::room(BYTES * pixels, "the picture that the stored pixels are a part of")?;
         }
         Ok(seat)
+    }
+
+    /// What is planned for.
+    pub fn pixels(&self, border: Border) -> Pixels<'_> {
+        Pixels { geometry: &self.geometry, size: self.size, border }
     }
 
     /// A stored pixel in the picture that is summed.

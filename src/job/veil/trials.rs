@@ -47,6 +47,7 @@ pub(crate) fn trials(
     let Some(seat) = had.first().map(|plan| plan.seat) else {
         return Ok(plans.into_iter().map(|plan| plan.and_then(|_| Err(none()))).collect());
     };
+    let stored = veil::Photo::rgba(photo.pixels.as_flattened(), seat.stored).map_err(failed)?;
     let filled = seat.filled(&photo.pixels);
     let sources = veil::Photo::rgba(filled.as_flattened(), seat.size).map_err(failed)?;
     let mut times = in_turns(rounds, had.len(), |index| {
@@ -55,7 +56,8 @@ pub(crate) fn trials(
         Ok(started.elapsed().as_secs_f64() * 1e3)
     })?
     .into_iter();
-    let pixels = looked_at(seat.size, brightest(&sources), Verify::Sample);
+    let mut pixels = looked_at(seat.stored, brightest(&stored), Verify::Sample);
+    pixels.iter_mut().for_each(|pixel| *pixel = seat.seen(*pixel));
     let mut trial = |plan: Prepared| {
         let Prepared { channels, asked, .. } = plan;
         let veil = computed(&channels, &sources)?;
