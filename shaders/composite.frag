@@ -2,6 +2,7 @@
 #include EVALUATOR
 #include "shared/emission.glsl"
 #include "shared/normalized.glsl"
+#include "shared/overlay.glsl"
 
 layout(binding = UNIT_PHOTO) uniform sampler2D photo;
 layout(std140, binding = BINDING_PASS) uniform Pass {
@@ -13,12 +14,16 @@ layout(std140, binding = BINDING_PASS) uniform Pass {
     float flat_span; // a range no wider than this is rounding
     float pad0;
     float pad1;
+    mat4x3 overlay_weights; // of each layer that is laid over the photo, RGB
 };
 layout(location = 0) out vec4 picture;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec3 added = strength * normalized(scale.rgb * vec3(glare(pixel)) - constant.rgb, flat_span);
+#ifdef OVERLAY_LAYERS
+    added += overlaid(pixel, overlay_weights);
+#endif
 #ifdef GLARE_ALONE
     picture = vec4(added, 1.0);
 #else

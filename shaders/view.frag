@@ -5,6 +5,7 @@
 layout(binding = UNIT_PHOTO) uniform sampler2D photo;
 #ifdef MIXED
 #include "shared/normalized.glsl"
+#include "shared/overlay.glsl"
 layout(binding = UNIT_FIELD) uniform sampler2D field;
 #else
 layout(binding = UNIT_PICTURE) uniform sampler2D picture;
@@ -25,6 +26,7 @@ layout(std140, binding = BINDING_PASS) uniform Pass {
     float wipe;      // columns of the screen from this one on show the picture, those before it the photo
     int means;       // not 0: the textures hold means, a texel a pixel of the screen
     vec2 coarse;     // texels of the field to a pixel of the photo, where it has fewer; else 0
+    mat4x3 overlay_weights; // of each layer that is laid over the photo, RGB
 };
 layout(location = 0) out vec4 shown;
 
@@ -35,6 +37,9 @@ vec3 light_at(bool before, vec2 at, ivec2 texel) {
 #elif defined(MIXED)
     ivec2 place = coarse.x > 0.0 ? ivec2(coarse * at) : texel;
     vec3 light = strength * normalized(scale * texelFetch(field, place, 0).rgb - constant, flat_span);
+#ifdef OVERLAY_LAYERS
+    light += overlaid(texel, overlay_weights);
+#endif
 #ifndef GLARE_ALONE
     light += texelFetch(photo, texel, 0).rgb;
 #endif

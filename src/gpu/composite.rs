@@ -3,7 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::field::Source;
-use super::layout::{Binding, PASS, PHOTO};
+use super::layout::{Binding, OVERLAY_LAYERS, PASS, PHOTO};
+use super::overlay::{self, Overlay};
 use super::resource::{Buffer, Scratch, Texel, Texture};
 use super::runner::Runner;
 use crate::{Error, Result};
@@ -25,8 +26,10 @@ pub(crate) struct Composite {
     /// A range of values that is no wider is rounding, and no contrast to stretch.
     pub flat: f32,
     pub pad: [f32; 2],
+    /// What each layer that is laid over the photo is multiplied by, RGB.
+    pub overlay: [[f32; 4]; OVERLAY_LAYERS],
 }
-const _: () = assert!(size_of::<Composite>() == 80);
+const _: () = assert!(size_of::<Composite>() == 144);
 
 /// What the composite's shader is specialised with: what it leaves out costs nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,12 +42,15 @@ pub(crate) struct Variant {
     pub take_light: bool,
     /// Whether the photo's colours are not multiplied by alpha, which tells its lights.
     pub straight: bool,
+    /// How many layers are laid over the photo; 0, or as many as are loaded.
+    pub layers: usize,
 }
 
 impl Variant {
     fn defines(self) -> Vec<(&'static str, &'static str)> {
         let mut defines = self.source.defines();
         defines.push(("NORMALIZE", self.normalize.0));
+        defines.extend(overlay::defines(self.layers));
         if self.take_light {
             defines.push(("TAKE_LIGHT", "1"));
             if self.straight {
@@ -62,6 +68,8 @@ pub(crate) struct CompositePass {
     /// How often each of the two was drawn or filled.
     stamps: [u64; 2],
     uniforms: Buffer<Composite>,
+    /// What is laid over the photo, of a picture that is one tile.
+    pub overlay: Overlay,
 }
 
 impl CompositePass {
@@ -71,6 +79,7 @@ impl CompositePass {
             picture: Scratch::default(),
             stamps: [0; 2],
             uniforms: Buffer::new(runner.device(), 1)?,
+            overlay: Overlay::default(),
         })
     }
 
@@ -84,6 +93,7 @@ impl CompositePass {
     pub fn unload(&mut self) {
         self.photo = Scratch::default();
         self.picture = Scratch::default();
+        self.overlay.unload();
     }
 
     /// The tile of the photo as it was last made.
@@ -111,6 +121,7 @@ impl CompositePass {
         self.stamps[1] += 1;
         let photo = self.loaded()?;
         photo.bind(PHOTO);
+        self.overlay.bind();
         let (width, height) = (photo.level_width(0), photo.level_height(0));
         Self::run(&mut self.picture, &mut self.uniforms, runner, &variant.defines(), settings, [width, height])
     }
@@ -126,6 +137,7 @@ impl CompositePass {
         let mut defines = variant.defines();
         defines.push(("GLARE_ALONE", "1"));
         self.stamps[1] += 1;
+        self.overlay.bind();
         Self::run(&mut self.picture, &mut self.uniforms, runner, &defines, settings, size)
     }
 

@@ -67,14 +67,18 @@ pub(crate) const PICTURE: Binding = ("UNIT_PICTURE", 14);
 /// What `local` draws on.
 pub(crate) const CANVAS: Binding = ("UNIT_CANVAS", 15);
 
+/// The first of the layers that are laid over the photo, and how many there are at most.
+pub(crate) const OVERLAY: Binding = ("UNIT_OVERLAY", 16);
+pub(crate) const OVERLAY_LAYERS: usize = 4;
+
 /// The last of the units.
-pub(crate) const LAST_UNIT: u32 = CANVAS.1;
+pub(crate) const LAST_UNIT: u32 = OVERLAY.1 + OVERLAY_LAYERS as u32 - 1;
 
 /// Pixels along a side of the largest square that is drawn as a point.
 pub(crate) const LARGEST_POINT: i32 = 64;
 
 /// Every binding, for the head of every shader.
-pub(crate) const BINDINGS: [Binding; 34] = [
+pub(crate) const BINDINGS: [Binding; 35] = [
     PASS,
     EVALUATOR,
     SAMPLES,
@@ -109,6 +113,7 @@ pub(crate) const BINDINGS: [Binding; 34] = [
     FOLDED,
     PICTURE,
     CANVAS,
+    OVERLAY,
 ];
 
 /// How a value of the field becomes glare: as it is, clamped to 0..1, or stretched to 0..1 by the range.

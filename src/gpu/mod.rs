@@ -39,6 +39,7 @@ pub(crate) mod layout;
 pub(crate) mod lines;
 pub(crate) mod local;
 pub(crate) mod mask;
+pub(crate) mod overlay;
 #[cfg(feature = "window")]
 pub(crate) mod paint;
 pub(crate) mod pixels;

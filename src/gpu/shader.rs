@@ -81,6 +81,7 @@ const SOURCES: &[(&str, &str)] = &sources![
     "shared/emission.glsl",
     "shared/knots.glsl",
     "shared/normalized.glsl",
+    "shared/overlay.glsl",
     "shared/phase.glsl",
     "shared/shapes.glsl",
     "shared/sine.glsl",

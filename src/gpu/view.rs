@@ -2,7 +2,8 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::layout::{Binding, FIELD, PASS, PHOTO, PICTURE};
+use super::layout::{Binding, FIELD, OVERLAY_LAYERS, PASS, PHOTO, PICTURE};
+use super::overlay;
 use super::resource::{Buffer, Texture};
 use super::runner::Runner;
 use super::screen::{Region, Screen};
@@ -44,8 +45,10 @@ pub(crate) struct View {
     pub means: u32,
     /// Texels of the field to a pixel of the photo, where it has fewer, else 0; set by the pass.
     pub coarse: [f32; 2],
+    /// What each layer that is laid over the photo is multiplied by, RGB.
+    pub overlay: [[f32; 4]; OVERLAY_LAYERS],
 }
-const _: () = assert!(size_of::<View>() == 144);
+const _: () = assert!(size_of::<View>() == 208);
 
 /// A texture and what tells its content from any other before.
 pub(crate) type Layer<'a> = (&'a Texture, u64);
@@ -60,6 +63,8 @@ pub(crate) struct Layers<'a> {
     pub picture: Option<Layer<'a>>,
     /// The field in its place, which becomes glare here; it may be coarser than the photo.
     pub field: Option<Layer<'a>>,
+    /// What is laid over the photo, or is glare, beside the field.
+    pub overlay: Vec<Layer<'a>>,
 }
 
 /// Draws the view.
@@ -68,12 +73,15 @@ pub(crate) struct ViewPass {
     shrink: ShrinkPass,
     /// Of photo, picture and field.
     means: [Means; 3],
+    /// Of the layers that are laid over the photo.
+    overlay: [Means; OVERLAY_LAYERS],
 }
 
 impl ViewPass {
     pub fn new(runner: &Runner) -> Result<Self> {
         let uniforms = Buffer::new(runner.device(), 1)?;
-        Ok(Self { uniforms, shrink: ShrinkPass::new(runner)?, means: Default::default() })
+        let (means, overlay) = Default::default();
+        Ok(Self { uniforms, shrink: ShrinkPass::new(runner)?, means, overlay })
     }
 
     /// Draws a region of the screen that lies at `place` of the layers.
@@ -92,10 +100,13 @@ impl ViewPass {
             let sides = [field.level_width(0), field.level_height(0)];
             if sides == layers.size { [0.0; 2] } else { [0, 1].map(|axis| sides[axis] as f32 / size[axis]) }
         });
-        let layers = [layers.photo, layers.picture, layers.field];
-        let shrinks = [smaller, smaller, smaller && coarse == [0.0; 2]];
-        let bindings: [Binding; 3] = [PHOTO, PICTURE, FIELD];
-        for (((layer, means), shrinks), binding) in layers.into_iter().zip(&mut self.means).zip(shrinks).zip(bindings) {
+        let fine = smaller && coarse == [0.0; 2];
+        let single: [(_, _, Binding); 3] =
+            [(layers.photo, smaller, PHOTO), (layers.picture, smaller, PICTURE), (layers.field, fine, FIELD)];
+        let laid = layers.overlay.iter().enumerate().map(|(at, &layer)| (Some(layer), smaller, overlay::binding(at)));
+        let means = self.means.iter_mut().chain(&mut self.overlay);
+        // Those that are not there have their places all the same.
+        for ((layer, shrinks, binding), means) in single.into_iter().chain(laid).zip(means) {
             let Some((texture, stamp)) = layer else { continue };
             if shrinks {
                 self.shrink.draw(runner, (texture, stamp), place, means)?.bind(binding);
@@ -111,6 +122,6 @@ impl ViewPass {
 
     /// Frees the means.
     pub fn unload(&mut self) {
-        self.means = Default::default();
+        (self.means, self.overlay) = Default::default();
     }
 }

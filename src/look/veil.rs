@@ -3,7 +3,7 @@
 use crate::choices::{Border, Projection};
 use crate::frame::Frame;
 use crate::photo::View;
-use crate::psf::{self, Parameters, Psf, Unit};
+use crate::psf::{self, Basis, Parameters, Psf, Unit};
 use crate::scene::{VeilFunction, VeilSection};
 use crate::veil::Geometry;
 
@@ -39,6 +39,42 @@ impl Veil {
             tolerance: *tolerance,
             adds,
         })
+    }
+
+    /// The same as another section says it. No file is read again for a scatter, a projection, a border or a tolerance.
+    ///
+    /// # Errors
+    /// Those of [`Veil::new`].
+    pub fn changed(&self, section: &VeilSection) -> Result<Self, psf::Fault> {
+        let unscattered = |parameters: &Parameters| Parameters { scatter: None, ..parameters.clone() };
+        let of = |function| Self { function, ..self.saying(section) };
+        if section.parameters == self.parameters {
+            return Ok(of(self.function.clone()));
+        }
+        match section.parameters.scatter {
+            Some(scatter) if unscattered(&section.parameters) == unscattered(&self.parameters) => {
+                self.function.scattering(scatter).map(of)
+            }
+            _ => VeilFunction::new(&section.parameters).map(of),
+        }
+    }
+
+    /// What a section says beside the function.
+    fn saying(&self, section: &VeilSection) -> Self {
+        let &VeilSection { ref parameters, fov: _, projection, border, tolerance } = section;
+        let border = border.unwrap_or_default();
+        Self { parameters: parameters.clone(), projection, border, tolerance, ..self.clone() }
+    }
+
+    /// Veils of functions that scatter all of the light, at most `most`, and what each is multiplied by, RGB, so that their sum is this
+    /// one: see [`psf::Basis`]. What changes nothing but the multiples leaves them as they are.
+    pub(crate) fn parts(&self, most: usize) -> (Vec<Self>, Vec<[f64; 3]>) {
+        let Basis { parts, weights } = self.psf().basis(most);
+        let part = |psf: Psf| {
+            let (parameters, function) = (Parameters::new(psf.name()), VeilFunction::from(psf));
+            Self { parameters, function, adds: false, ..self.clone() }
+        };
+        (parts.into_iter().map(part).collect(), weights)
     }
 
     /// The same, added to the photo or not.

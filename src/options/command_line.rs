@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::DVec2;
 
-use crate::look::{Accuracy, Look, LookLens, LookLights};
+use crate::look::{Accuracy, Look, LookLens, LookLights, Veil};
 use crate::scene::{FindOptions, Goal, NO_VEIL};
 use crate::{Error, Result};
 
@@ -19,7 +19,7 @@ pub fn command_line(look: &Look, photo: &Path, output: &Path, file: Option<&Path
         _ if !needs_file(look) => words.extend(options(look)?),
         Some(file) => words.extend(["--scene".into(), word(file)?]),
         None => {
-            let reason = "lights, ghosts or a lens by hand need a file: save the look first";
+            let reason = "lights, ghosts, a veil or a lens by hand need a file: save the look first";
             return Err(Error::Usage(reason.into()));
         }
     }
@@ -31,9 +31,16 @@ pub fn command_line(look: &Look, photo: &Path, output: &Path, file: Option<&Path
 fn needs_file(look: &Look) -> bool {
     // A veil has many options, and a file says them all.
     matches!(look.lens, LookLens::Own(_))
-        || look.veil.is_some()
+        || (look.veil.is_some() && !has_veil_of_lens(look))
         || look.lights != LookLights::Found
         || !look.ghosts.is_empty()
+}
+
+/// Whether the veil is the one that the lens brings along, and no option is about it.
+fn has_veil_of_lens(look: &Look) -> bool {
+    let of_lens = look.lens.veil().and_then(|veil| Veil::new(&veil.section, false).ok());
+    // A tolerance is one of all glare on a command line.
+    look.veil == of_lens && look.accuracy.goal == Goal::default() && look.fov.is_none()
 }
 
 /// A path as a word that is no option.

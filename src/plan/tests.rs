@@ -364,3 +364,31 @@ fn two_ghosts_cost_more_than_their_bells() {
     let plan = plan(&ghosts, Frame::full(480, 270), &Request::new(1e-3)).unwrap();
     assert_eq!(plan.evaluator(), Evaluator::Local, "{:?}", plan.costs);
 }
+
+#[test]
+fn a_periodic_bell_is_weighed_by_the_lobe_that_the_picture_shows() {
+    // Its centre may be anywhere, in the picture or periods beyond it.
+    let (frame, mut chance) = (Frame::full(96, 54), Chance::new(158));
+    let periodic = Bell::examples().into_iter().filter(|bell| bell.shape().period().is_some());
+    let bells: Vec<Bell> = periodic.map(|bell| bell.in_period(DVec2::new(6.5, 5.9))).collect();
+    assert_eq!(bells.len(), 2);
+    for bell in bells.iter().cycle().take(200) {
+        let center = [chance.between(-12.0, 12.0), chance.between(-9.0, 9.0)];
+        let ghost =
+            Ghost { bell: bell.clone(), ..ghost(center, [chance.between(0.08, 0.6), chance.between(0.06, 0.6)]) };
+        let at = |i: u32, j: u32| {
+            ghost.bell.shape().value(frame.position(f64::from(i), f64::from(j)) - ghost.center, ghost.size)
+        };
+        let largest = (0..54).flat_map(|j| (0..96).map(move |i| (i, j))).map(|(i, j)| at(i, j)).fold(0.0, f64::max);
+        // What no f32 can hold beside its bell's peak is nothing.
+        if largest < 1e-29 {
+            continue;
+        }
+        let weighed = weigh::weigh(&Problem::new(std::slice::from_ref(&ghost), frame), 1e-3);
+        let [found, ..] = weighed.scale;
+        assert!(
+            (0.9 * largest..=1.000_001 * largest).contains(&found),
+            "{bell} at {center:?}: {found:e} of {largest:e}"
+        );
+    }
+}

@@ -52,9 +52,14 @@ pub(crate) fn weight(ghost: &Ghost, scale: [f64; 3]) -> [f64; 3] {
 /// Weighs the ghosts against the picture.
 pub(super) fn weigh(problem: &Problem, tolerance: f64) -> Weighed {
     let (ghosts, frame) = (problem.ghosts(), problem.frame());
-    let seen = |ghost| {
+    let seen = |ghost: &Ghost| {
         let offset = nearest_offset(ghost, frame);
-        (offset, reached(ghost, offset.abs()))
+        let shape = ghost.bell.shape();
+        let share = match shape.period() {
+            Some(_) => shape.value(brightest(ghost, frame) - ghost.center, ghost.size),
+            None => reached(ghost, offset.abs()),
+        };
+        (offset, share)
     };
     let (nearest, shares): (Vec<DVec2>, Vec<f64>) = ghosts.par_iter().map(seen).unzip();
     let peaks = probes(ghosts, &shares, frame);
@@ -140,6 +145,14 @@ fn nearest_offset(ghost: &Ghost, frame: Frame) -> DVec2 {
     (frame.position(pixel.x, pixel.y) - ghost.center) / ghost.size
 }
 
+/// Where on the window a ghost is brightest: its centre or the edge next to that, but for the lobes of periodic bells.
+fn brightest(ghost: &Ghost, frame: Frame) -> DVec2 {
+    let (low, high) = frame.bounds();
+    let (low, high) = (low - ghost.center, high - ghost.center);
+    let along = |axis: usize| ghost.bell.shape().brightest(axis, low[axis], high[axis], ghost.size[axis]);
+    ghost.center + DVec2::new(along(0), along(1))
+}
+
 /// Pixels at which the field may be largest.
 fn probes(ghosts: &[Ghost], shares: &[f64], frame: Frame) -> Vec<[i32; 2]> {
     let window = frame.window;
@@ -162,7 +175,7 @@ fn probes(ghosts: &[Ghost], shares: &[f64], frame: Frame) -> Vec<[i32; 2]> {
         alone.select_nth_unstable_by(strongest, |a, b| b.0.total_cmp(&a.0));
     }
     let mut pixels: Vec<[i32; 2]> =
-        alone[..strongest].iter().map(|&(_, k)| inside(frame.pixel(ghosts[k].center))).collect();
+        alone[..strongest].iter().map(|&(_, k)| inside(frame.pixel(brightest(&ghosts[k], frame)))).collect();
     let side = ((most - strongest) as f64).sqrt() as u32;
     for i in 0..side.min(GRID) {
         for j in 0..side.min(GRID) {

@@ -134,18 +134,25 @@ impl Moffat {
 pub(super) fn cie135(observer: Observer) -> [Moffat; 5] {
     let [core, wide] = cie135_factors(observer);
     let pigment = observer.pigment;
-    [
-        (core * 9.2e6, 0.0046, 1.5),
-        (core * 1.5e5, 0.045, 1.5),
-        (wide * 400.0, 0.1, 1.0),
-        (wide * pigment * 1300.0, 0.1, 1.5),
-        (wide * pigment * 0.8, 0.1, 0.5),
-    ]
-    .map(|(factor, core, exponent)| Moffat { factor, core, exponent })
+    let factors = [core, core, wide, wide * pigment, wide * pigment];
+    let scaled = |i: usize| Moffat { factor: factors[i] * CIE135_MOFFATS[i].factor, ..CIE135_MOFFATS[i] };
+    [0, 1, 2, 3, 4].map(scaled)
 }
 
+/// The five parts of [CIE135] by themselves: the core's two, the one that age raises, and the two of pigment.
+pub(super) const CIE135_MOFFATS: [Moffat; 5] = [
+    Moffat { factor: 9.2e6, core: 0.0046, exponent: 1.5 },
+    Moffat { factor: 1.5e5, core: 0.045, exponent: 1.5 },
+    Moffat { factor: 400.0, core: 0.1, exponent: 1.0 },
+    Moffat { factor: 1300.0, core: 0.1, exponent: 1.5 },
+    Moffat { factor: 0.8, core: 0.1, exponent: 0.5 },
+];
+
+/// What θ² (degrees) is taken by in [CIE135], beside the factor of age.
+pub(super) const CIE135_QUADRATIC: f64 = 3e-8;
+
 /// 1 − 0.08a₄ and 1 + 1.6a₄, over the normaliser.
-fn cie135_factors(observer: Observer) -> [f64; 2] {
+pub(super) fn cie135_factors(observer: Observer) -> [f64; 2] {
     let a4 = (observer.age / 70.0).powi(4);
     [1.0 - 0.08 * a4, 1.0 + 1.6 * a4].map(|factor| factor / cie135_normaliser(observer))
 }
@@ -158,7 +165,7 @@ pub(super) fn cie135_normaliser(observer: Observer) -> f64 {
 /// [CIE135]'s constant, and the factor of its term in θ² (degrees).
 pub(super) fn cie135_moments(observer: Observer) -> [f64; 2] {
     let [_, wide] = cie135_factors(observer);
-    [0.0025 * observer.pigment / cie135_normaliser(observer), 3e-8 * wide]
+    [0.0025 * observer.pigment / cie135_normaliser(observer), CIE135_QUADRATIC * wide]
 }
 
 /// [SPENCER]'s functions of θ in degrees without the ring f₃ (the ciliary corona's lenticular halo, which depends on

@@ -7,6 +7,7 @@ use super::hankel;
 use super::integral::integral_from_zero;
 use super::kernel::Kernel;
 use super::parameters::Name;
+use super::parts::Part;
 use super::plane::{Abg, Camera, Term};
 use super::table::Table;
 
@@ -27,13 +28,17 @@ pub(super) enum Function {
     Cie(Observer),
     Cie135(Observer),
     Spencer(Luminance),
-    StilesHolladay { age: f64 },
+    StilesHolladay {
+        age: f64,
+    },
     Gaussian(Vec<Term>),
     Mixture(Vec<Term>),
     Abg(Abg),
     Table(Table),
     Camera,
     Kernel(Kernel),
+    /// What others are sums of, and which.
+    Part(Part, Name),
 }
 
 impl Function {
@@ -49,6 +54,7 @@ impl Function {
             Self::Table(_) => Name::Table,
             Self::Camera => Name::Camera,
             Self::Kernel(_) => Name::Kernel,
+            Self::Part(_, of) => *of,
         }
     }
 
@@ -67,6 +73,7 @@ impl Function {
             Self::Table(table) => table.value(at),
             Self::Camera => Camera.value(at),
             Self::Kernel(kernel) => kernel.ring(at),
+            Self::Part(part, _) => part.value(at),
         }
     }
 
@@ -75,23 +82,27 @@ impl Function {
         match self {
             Self::Cie(observer) => [eye::cie_constant(*observer), 0.0],
             Self::Cie135(observer) => eye::cie135_moments(*observer),
+            Self::Part(part, _) => part.moments(),
             _ => [0.0; 2],
         }
     }
 
     pub fn unit(&self) -> Unit {
         match self {
-            Self::Cie(_) | Self::Cie135(_) | Self::Spencer(_) | Self::StilesHolladay { .. } => Unit::Degrees,
+            Self::Cie(_) | Self::Cie135(_) | Self::Spencer(_) | Self::StilesHolladay { .. } | Self::Part(..) => {
+                Unit::Degrees
+            }
             Self::Gaussian(_) | Self::Mixture(_) | Self::Abg(_) | Self::Table(_) | Self::Camera => Unit::Look,
             Self::Kernel(_) => Unit::Pixels,
         }
     }
 
-    /// Where it ends to count for the energy.
+    /// Where it ends to count for the energy; a table and a tail of an end are 0 beyond.
     pub fn end(&self) -> f64 {
         match self {
             Self::Cie(_) | Self::Cie135(_) | Self::StilesHolladay { .. } => eye::CIE_END,
-            Self::Spencer(_) => eye::SPENCER_END,
+            Self::Spencer(_) | Self::Part(_, Name::Spencer) => eye::SPENCER_END,
+            Self::Part(..) => eye::CIE_END,
             Self::Gaussian(_) | Self::Mixture(_) | Self::Camera => f64::INFINITY,
             Self::Abg(abg) => abg.end,
             Self::Table(table) => table.end(),
@@ -104,6 +115,7 @@ impl Function {
         match self {
             Self::Cie(_) => eye::CIE_FROM,
             Self::StilesHolladay { .. } => eye::STILES_FROM,
+            Self::Part(part, _) => part.flat_within(),
             _ => 0.0,
         }
     }
@@ -114,7 +126,7 @@ impl Function {
             // Six times the widest Gaussian, 1.5e-8 of its height.
             Self::Camera => 6.0 * Camera::WIDTHS[2],
             Self::Abg(abg) => abg.reach(),
-            Self::Table(table) => table.reach(),
+            Self::Table(table) => table.end(),
             _ if self.unit() == Unit::Degrees => 180.0,
             _ => f64::INFINITY,
         }
@@ -134,6 +146,7 @@ impl Function {
             Self::Table(table) => table.first(),
             Self::Camera => Camera::WIDTHS[0],
             Self::Kernel(_) => 1.0,
+            Self::Part(part, _) => part.scale(),
         }
     }
 
@@ -180,10 +193,14 @@ impl Function {
         let square = 1_f64.to_radians().powi(2);
         match self {
             Self::Cie135(observer) => square * eye::cie135(*observer).iter().map(|part| part.transform(q)).sum::<f64>(),
+            Self::Part(part, _) => square * part.transform(q),
             Self::Gaussian(terms) | Self::Mixture(terms) => {
                 terms.iter().map(|term| term.energy() * (-0.5 * (term.sigma * q).powi(2)).exp()).sum()
             }
-            Self::Table(table) => hankel::transform(&|r| table.value(r), self.scale(), table.end(), q),
+            Self::Table(_) => hankel::transform_within(&|r| self.value(r), self.scale(), self.end(), q),
+            Self::Abg(abg) if abg.end.is_finite() => {
+                hankel::transform_within(&|r| self.value(r), self.scale(), abg.end, q)
+            }
             // Its rings' straight lines bend at every pixel.
             Self::Kernel(kernel) => hankel::transform(&|r| kernel.ring(r), self.scale(), kernel.end() + 1.0, q),
             Self::Abg(_) | Self::Camera => hankel::transform(&|r| self.value(r), self.scale(), 3.0 * self.scale(), q),

@@ -35,7 +35,7 @@ impl Term {
     }
 
     /// With unit energy on the plane times `share`.
-    fn of_energy(sigma: f64, share: f64, tint: [f64; 3]) -> Self {
+    pub(super) fn of_energy(sigma: f64, share: f64, tint: [f64; 3]) -> Self {
         Self { sigma, weight: share / (TAU * sigma * sigma), tint }
     }
 
@@ -102,12 +102,12 @@ pub(super) struct Abg {
     a: f64,
     b: f64,
     g: f64,
-    /// Where it stops to count for the energy.
+    /// Where it ends: beyond, it is 0.
     pub end: f64,
 }
 
 impl Abg {
-    /// The tail of these three, which counts to the radius `end`: without one to infinity, which takes g above 2.
+    /// The tail of these three to the radius `end`: without one to infinity, which takes g above 2.
     pub fn new([a, b, g]: [f64; 3], end: Option<f64>) -> Result<Self, Fault> {
         let (a, b) = (positive("a", a)?, positive("b", b)?);
         let g = within("g", g, EXPONENTS, "the exponent of an ABg tail is from 0.5 to 10")?;
@@ -123,9 +123,14 @@ impl Abg {
         Ok(Self { a, b, g, end })
     }
 
-    /// Its value at the radius r.
+    /// The same with the factor 1, and what it has for that.
+    pub fn over_its_factor(self) -> (Self, f64) {
+        (Self { a: 1.0, ..self }, self.a)
+    }
+
+    /// Its value at the radius r; 0 beyond its end.
     pub fn value(self, r: f64) -> f64 {
-        self.a / (self.b + r.powf(self.g))
+        if r > self.end { 0.0 } else { self.a / (self.b + r.powf(self.g)) }
     }
 
     /// The radius at which it has half its height.
@@ -133,9 +138,9 @@ impl Abg {
         self.b.powf(1.0 / self.g)
     }
 
-    /// The radius at which it has fallen to 1e-100 of its height.
+    /// The radius at which it has fallen to 1e-100 of its height, or where it ends.
     pub fn reach(self) -> f64 {
-        self.core() * 1e100_f64.powf(1.0 / self.g)
+        (self.core() * 1e100_f64.powf(1.0 / self.g)).min(self.end)
     }
 
     /// 2π ∫ r k dr to its end.

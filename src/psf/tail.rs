@@ -21,7 +21,7 @@ pub struct Tail {
 }
 
 /// The powers that a series is cut to.
-const ORDERS: usize = 8;
+pub(super) const ORDERS: usize = 8;
 
 impl Tail {
     /// Its value at an angle in degrees.
@@ -49,6 +49,7 @@ impl Psf {
                 let [_, cube, square] = eye::spencer_weights(*luminance);
                 shifted(square, 2).iter().zip(shifted(cube, 3)).map(|(a, b)| a + b).collect()
             }
+            Function::Part(part, _) => part.powers().to_vec(),
             _ => return None,
         };
         let [constant, quadratic] = self.function.moments();
@@ -73,7 +74,7 @@ impl Psf {
 
 impl eye::Moffat {
     /// (1 + (θ/c)²)^−β = Σ binomial(−β, j) (c/θ)^(2β + 2j), added to the powers θ^−1, θ^−2, ….
-    fn add_powers(self, powers: &mut [f64]) {
+    pub(super) fn add_powers(self, powers: &mut [f64]) {
         let first = (2.0 * self.exponent) as usize;
         let mut factor = self.factor * self.core.powi(first as i32);
         for (j, order) in (first..=powers.len()).step_by(2).enumerate() {
@@ -84,7 +85,7 @@ impl eye::Moffat {
 }
 
 /// (θ + h)^−s = Σ binomial(−s, j) h^j θ^−(s + j), h = 0.02°, times `factor`, as the powers θ^−1, θ^−2, ….
-fn shifted(factor: f64, s: usize) -> [f64; ORDERS] {
+pub(super) fn shifted(factor: f64, s: usize) -> [f64; ORDERS] {
     let mut powers = [0.0; ORDERS];
     let mut next = factor;
     for (j, power) in powers[s - 1..].iter_mut().enumerate() {

@@ -69,10 +69,10 @@ pub(super) fn bells<'a>(groups: impl IntoIterator<Item = &'a Group>) -> Bells {
     if kinds.count_ones() > 1 { Bells::several(kinds) } else { Bells::one(first.shape().shader()) }
 }
 
-/// The composite that the settings ask for.
-pub(super) fn variant(source: Source, settings: &Settings) -> Variant {
+/// The composite that the settings ask for, of so many layers that are laid over the photo.
+pub(super) fn variant(source: Source, settings: &Settings, layers: usize) -> Variant {
     let (take_light, straight) = (settings.light_gain != [1.0; 3], settings.emission.straight);
-    Variant { source, normalize: normalize(settings), take_light, straight }
+    Variant { source, normalize: normalize(settings), take_light, straight, layers }
 }
 
 /// How values become glare.
@@ -170,6 +170,7 @@ pub(super) fn uniforms(plan: &Plan, settings: &Settings) -> Composite {
         strength: settings.strength as f32,
         flat: (2.0 * plan.predicted.single() * plan.scale.iter().fold(0.0, |a: f64, &b| a.max(b))) as f32,
         pad: [0.0; 2],
+        overlay: settings.overlay.map(|weights| rgb(weights, 0.0)),
     }
 }
 

@@ -7,6 +7,7 @@ use super::{Part, Picture, Settings, View, convert};
 use crate::Result;
 use crate::frame::Frame;
 use crate::gpu::mask::MaskPass;
+use crate::gpu::overlay;
 use crate::gpu::view::{Layers, View as Uniforms, ViewPass};
 use crate::gpu::{Device, Region, Screen};
 
@@ -44,7 +45,7 @@ impl Live {
             (picture, Wiped::Nothing) => (None, picture),
             (picture, Wiped::Part) => (Some(photo), picture),
         };
-        let layers = Layers { size: self.picture.composite.size()?, photo, picture, field: None };
+        let layers = Layers { size: self.picture.composite.size()?, photo, picture, field: None, overlay: Vec::new() };
         let defines = view.defines(&layers, region);
         let (uniforms, place) = (view.uniforms(region), view.place(region));
         self.view.draw(&self.picture.field.runner, &layers, &defines, &uniforms, &place, (screen, region))
@@ -76,10 +77,13 @@ impl Live {
         let photo = Some((self.picture.composite.loaded()?, self.picture.composite.stamps()[0]));
         let field = self.picture.field.values.drawn().filter(|_| wiped != Wiped::All);
         let photo = photo.filter(|_| part == Part::Picture || wiped != Wiped::Nothing);
-        let layers = Layers { size: self.picture.composite.size()?, photo, picture: None, field };
+        let count = if field.is_some() { self.picture.layers(settings) } else { 0 };
+        let overlay = self.picture.composite.overlay.layers().take(count).collect();
+        let layers = Layers { size: self.picture.composite.size()?, photo, picture: None, field, overlay };
         let mut defines = view.defines(&layers, region);
         if field.is_some() {
             defines.extend([("MIXED", "1"), ("NORMALIZE", convert::normalize(settings).0)]);
+            defines.extend(overlay::defines(count));
             defines.extend((part == Part::Glare).then_some(("GLARE_ALONE", "1")));
         }
         let rgb = |[red, green, blue, _]: [f32; 4]| [red, green, blue];
@@ -88,6 +92,7 @@ impl Live {
             constant: rgb(composite.constant),
             strength: composite.strength,
             flat: composite.flat,
+            overlay: composite.overlay,
             ..view.uniforms(region)
         };
         self.view.draw(&self.picture.field.runner, &layers, &defines, &uniforms, &view.place(region), (screen, region))

@@ -57,7 +57,7 @@ impl Picture {
         for tile in self.field.tiles(frame) {
             let source = self.field.evaluate(frame, tile)?;
             self.upload(frame, tile, pixels)?;
-            self.composite.draw(&self.field.runner, convert::variant(source, settings), &uniforms)?;
+            self.composite.draw(&self.field.runner, convert::variant(source, settings, 0), &uniforms)?;
             // The tile before this one has come back while this one was drawn.
             let before = std::mem::replace(&mut pending, self.read_back(frame, tile, pixels)?);
             self.collect(before, pixels)?;
@@ -73,7 +73,8 @@ impl Picture {
     pub fn draw(&mut self, frame: Frame, settings: &Settings) -> Result<()> {
         let uniforms = self.start(frame, settings)?;
         let source = self.field.whole(frame)?;
-        self.composite.draw(&self.field.runner, convert::variant(source, settings), &uniforms)?;
+        let variant = convert::variant(source, settings, self.layers(settings));
+        self.composite.draw(&self.field.runner, variant, &uniforms)?;
         Ok(())
     }
 
@@ -96,8 +97,12 @@ impl Picture {
         for tile in self.field.tiles(frame) {
             let source = self.field.evaluate(frame, tile)?;
             let size = [tile.width, tile.height];
-            let glare =
-                self.composite.draw_glare(&self.field.runner, convert::variant(source, settings), &uniforms, size)?;
+            let glare = self.composite.draw_glare(
+                &self.field.runner,
+                convert::variant(source, settings, 0),
+                &uniforms,
+                size,
+            )?;
             let at = super::offset(frame.window, tile);
             self.field.runner.run("readback", || glare.read(&mut pixels[at..], stride, tile.width, tile.height));
             self.field.runner.device().check("drawing the glare")?;
@@ -113,8 +118,30 @@ impl Picture {
         let uniforms = self.start(frame, settings)?;
         let source = self.field.whole(frame)?;
         let size = [frame.window.width, frame.window.height];
-        self.composite.draw_glare(&self.field.runner, convert::variant(source, settings), &uniforms, size)?;
+        let variant = convert::variant(source, settings, self.layers(settings));
+        self.composite.draw_glare(&self.field.runner, variant, &uniforms, size)?;
         Ok(())
+    }
+
+    /// Takes layers of the size of the loaded photo, at most four, each row by row from the top, in place of those before. What
+    /// is drawn and left on the device, or viewed, has them added, each multiplied by its factor in [`Settings::overlay`]: the
+    /// picture and the glare alike. What is composited for the CPU has not.
+    ///
+    /// # Errors
+    /// [`Error::Gl`](crate::Error::Gl) where no photo is loaded, or the driver refuses; there are none then.
+    ///
+    /// # Panics
+    /// If there are too many, or one is of another size.
+    pub fn lay_over(&mut self, layers: &[Vec<[f32; 4]>]) -> Result<()> {
+        let size = self.composite.size()?;
+        let pixels = size[0] as usize * size[1] as usize;
+        assert!(layers.iter().all(|layer| layer.len() == pixels), "as many pixels as the photo has");
+        self.composite.overlay.load(&self.field.runner, size, layers)
+    }
+
+    /// How many layers are laid over what is drawn.
+    pub(super) fn layers(&self, settings: &Settings) -> usize {
+        if settings.overlay == [[0.0; 3]; 4] { 0 } else { self.composite.overlay.layers().len() }
     }
 
     /// A pixel of the photo and of what was drawn last, linear; none where it is not on the device.
@@ -125,7 +152,7 @@ impl Picture {
         both.then(|| [photo, picture].map(|texture| texture.read_texel([column, row])))
     }
 
-    /// Forgets the photo and the picture on the device.
+    /// Forgets the photo, what is laid over it, and the picture on the device.
     pub fn unload(&mut self) {
         self.composite.unload();
     }

@@ -23,6 +23,8 @@ pub struct Settings {
     pub threshold: f64,
     /// How a pixel of the photo gives light.
     pub emission: Emission,
+    /// What each layer that [`Picture::lay_over`](super::Picture::lay_over) was given is multiplied by, RGB; 0 where there is none.
+    pub overlay: [[f64; 3]; 4],
 }
 
 impl Default for Settings {
@@ -34,6 +36,7 @@ impl Default for Settings {
             light_gain: [1.0; 3],
             threshold: f64::INFINITY,
             emission: [0.2126, 0.7152, 0.0722].into(),
+            overlay: [[0.0; 3]; 4],
         }
     }
 }
@@ -63,8 +66,14 @@ impl Settings {
                 self.strength
             )));
         }
-        match self.constant.into_iter().chain(self.light_gain).find(|&value| !single(value)) {
-            Some(value) => Err(Error::Usage(format!("a colour of {value:e} is beyond what 32-bit floats hold"))),
+        match self
+            .constant
+            .into_iter()
+            .chain(self.light_gain)
+            .chain(self.overlay.into_iter().flatten())
+            .find(|&value| !single(value))
+        {
+            Some(value) => Err(Error::Usage(format!("a factor of {value:e} is beyond what 32-bit floats hold"))),
             None => Ok(()),
         }
     }
@@ -73,7 +82,7 @@ impl Settings {
     /// picture made smaller needs no picture then.
     pub fn is_affine(&self) -> bool {
         // All fields by name: one that is added has to say what it does to means.
-        let Self { strength: _, normalize, constant: _, light_gain, threshold: _, emission: _ } = *self;
+        let Self { strength: _, normalize, constant: _, light_gain, threshold: _, emission: _, overlay: _ } = *self;
         normalize != Normalize::Clamp && light_gain == [1.0; 3]
     }
 }

@@ -33,9 +33,16 @@ pub struct VeilSection {
     pub tolerance: Option<f64>,
 }
 
-/// A function that can be computed with, and the words that it was made from.
-#[derive(Debug, Clone, PartialEq)]
+/// A function that can be computed with, which copies share.
+#[derive(Debug, Clone)]
 pub struct VeilFunction(Arc<Psf>);
+
+impl PartialEq for VeilFunction {
+    fn eq(&self, other: &Self) -> bool {
+        // A picture has millions of numbers, and looks are compared again and again.
+        Arc::ptr_eq(&self.0, &other.0) || self.0 == other.0
+    }
+}
 
 impl VeilFunction {
     /// The function of a veil's parameters; files that they name are read.
@@ -43,12 +50,26 @@ impl VeilFunction {
     /// # Errors
     /// A [`psf::Fault`], which names the key.
     pub fn new(parameters: &Parameters) -> Result<Self, psf::Fault> {
-        parameters.function(table, kernel).map(|psf| Self(Arc::new(psf)))
+        parameters.function(table, kernel).map(Self::from)
     }
 
     /// It.
     pub fn psf(&self) -> &Psf {
         &self.0
+    }
+
+    /// The same with another share of the light that is scattered, and nothing read again.
+    ///
+    /// # Errors
+    /// Those of [`Psf::scattering`].
+    pub fn scattering(&self, scatter: f64) -> Result<Self, psf::Fault> {
+        self.psf().clone().scattering(scatter).map(Self::from)
+    }
+}
+
+impl From<Psf> for VeilFunction {
+    fn from(psf: Psf) -> Self {
+        Self(Arc::new(psf))
     }
 }
 

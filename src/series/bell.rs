@@ -120,6 +120,11 @@ pub trait Shape: Sync {
     /// A bound of the bell along one axis: no value at offsets of at least (x, y) is beyond `along(x) * along(y)`.
     fn along(&self, distance: f64, size: f64) -> f64;
 
+    /// The offset from `low` to `high` along an axis at which the bell is largest: the nearest to its centre.
+    fn brightest(&self, _axis: usize, low: f64, high: f64, _size: f64) -> f64 {
+        0.0f64.clamp(low, high)
+    }
+
     /// A bound of what the copies of [`Shape::along`], `period` apart, add within `distance` < `period` of the centre.
     fn wrap(&self, period: f64, distance: f64, size: f64) -> f64;
 

@@ -44,6 +44,9 @@ trait Periodic: Sync {
     /// The factor at x periods from its centre, of a size in periods.
     fn factor(&self, x: f64, size: f64) -> f64;
 
+    /// Where the factor is 1, in periods: between two of them it falls and rises once.
+    fn lobes(&self) -> Vec<f64>;
+
     /// a_n and b_n of the factor for n = 0 ..= `highest`.
     fn coefficients(&self, highest: u32, size: f64) -> Vec<[f64; 2]>;
 
@@ -65,6 +68,10 @@ impl Periodic for VonMises {
     fn factor(&self, x: f64, size: f64) -> f64 {
         // 1 − cos = 2 sin²(half), which does not cancel.
         (-2.0 * ((PI * x).sin() / (TAU * size)).powi(2)).exp()
+    }
+
+    fn lobes(&self) -> Vec<f64> {
+        vec![0.0]
     }
 
     /// a_n = exp(−κ) I_n(κ).
@@ -91,6 +98,11 @@ impl Periodic for SineGaussian {
 
     fn factor(&self, x: f64, size: f64) -> f64 {
         (-0.5 * (((TAU * x).sin() - self.mean) / (TAU * size)).powi(2)).exp()
+    }
+
+    fn lobes(&self) -> Vec<f64> {
+        let lobe = self.mean.asin() / TAU;
+        vec![lobe, 0.5 - lobe]
     }
 
     fn coefficients(&self, highest: u32, size: f64) -> Vec<[f64; 2]> {
@@ -158,6 +170,19 @@ impl<B: Periodic> Shape for B {
     /// It comes back after a period.
     fn along(&self, _distance: f64, _size: f64) -> f64 {
         1.0
+    }
+
+    /// A lobe, where one lies between, and else the brighter end.
+    fn brightest(&self, axis: usize, low: f64, high: f64, size: f64) -> f64 {
+        let period = Periodic::period(self)[axis];
+        let within = |lobe: f64| {
+            let next = period * (lobe + (low / period - lobe).ceil());
+            (next <= high).then_some(next.max(low))
+        };
+        self.lobes().into_iter().find_map(within).unwrap_or_else(|| {
+            let factor = |offset: f64| self.factor(offset / period, size / period);
+            if factor(low) > factor(high) { low } else { high }
+        })
     }
 
     fn wrap(&self, _period: f64, _distance: f64, _size: f64) -> f64 {

@@ -2,6 +2,7 @@
 
 mod ask;
 mod device;
+mod draw;
 mod files;
 mod memory;
 mod menu;
@@ -36,9 +37,6 @@ use files::Files;
 pub(super) use files::LookFile;
 use memory::Budget;
 pub use memory::PIXEL_BYTES;
-
-/// What a look says that the window does not show.
-const VEIL_UNSEEN: &str = "the look has a veil: the window shows its ghosts only, and saves pictures with the veil";
 
 /// Milliseconds of plan, spectrum, composite and view from which on a drag is shown by previews.
 const SLOW: f64 = 33.0;
@@ -165,6 +163,11 @@ impl App {
         self.stage.problem()
     }
 
+    /// Whether a veil is being summed in the background.
+    pub fn is_veiling(&self) -> bool {
+        self.stage.veiling().is_summing()
+    }
+
     /// Where the picture lay on the screen in the last frame.
     pub fn placement(&self) -> Option<&viewing::Placement> {
         self.canvas.placement.as_ref()
@@ -266,6 +269,7 @@ impl App {
 
     /// Takes what was read in the background.
     fn take_in(&mut self) {
+        self.stage.take_in();
         for Read { document, result } in self.loader.take() {
             match (document, result) {
                 (Some(number), read) => self.wake(number, read),
@@ -274,11 +278,7 @@ impl App {
                     for note in &document.photo.source.notes {
                         self.notice(format!("{}: {note}", document.path.display()));
                     }
-                    let veiled = document.look.veil.is_some();
                     self.add(document);
-                    if veiled {
-                        self.notice(VEIL_UNSEEN.to_owned());
-                    }
                     // While many are read, those before are let go of as the next come in.
                     self.keep_within_budget();
                 }
@@ -329,56 +329,6 @@ impl App {
         }
     }
 
-    /// Brings the picture up to date and draws it; says when it is to be drawn again by itself.
-    fn draw(&mut self, screen: &Screen) -> Result<Duration> {
-        let Some(placement) = self.canvas.placement else { return Ok(Duration::MAX) };
-        let Some((number, document)) = self.documents.get(self.current) else { return Ok(Duration::MAX) };
-        if document.is_asleep() {
-            // Nothing of another photo under its name.
-            self.stage.clear();
-            return Ok(Duration::MAX);
-        }
-        let still = self.context.time() - self.moved;
-        let preview = self.cost > SLOW && still < SETTLED && self.context.egui_is_using_pointer();
-        let done = self.stage.counts();
-        let problem = self.stage.problem().is_some();
-        self.stage.update(*number, document, preview)?;
-        let surround = opaque(self.context.global_style().visuals.extreme_bg_color);
-        self.stage.show(document, &placement, surround, screen)?;
-        if document.viewing.mask || document.sets_threshold {
-            self.stage.mask(document, &placement, screen)?;
-        }
-        if !preview && self.stage.counts().spectra > done.spectra {
-            let times = self.stage.times();
-            self.cost = times.plan + times.spectrum + times.composite + times.view;
-        }
-        let mut again = if preview { Duration::from_secs_f64(SETTLED - still) } else { Duration::MAX };
-        if problem != self.stage.problem().is_some() {
-            again = Duration::ZERO;
-        }
-        let held = self.context.egui_is_using_pointer();
-        let moving = still < SETTLED || held || self.stage.counts().spectra > done.spectra;
-        let (news, later) = self.stage.study(document, moving, &self.context)?;
-        if news {
-            again = Duration::ZERO;
-        } else if later && !held {
-            // A frame of its own, where a script and no person changed the look.
-            again = again.min(Duration::from_secs_f64((SETTLED - still).max(0.02)));
-        }
-        if let Some(loupe) = self.canvas.loupe {
-            self.stage.magnify(document, loupe.center, loupe.side, loupe.before, screen, loupe.region)?;
-            let [column, row] = loupe.pixel;
-            let probe = self.stage.pixel(document, column, row)?;
-            let probe = probe.map(|[photo, picture]| Probe { pixel: loupe.pixel, photo, picture });
-            if probe != self.probe {
-                // The numbers are known once the picture is; the next frame shows them.
-                self.probe = probe;
-                again = Duration::ZERO;
-            }
-        }
-        Ok(again)
-    }
-
     fn ui(&mut self, ui: &mut Ui, screen: &Screen) {
         let dropped = ui.input(|input| input.raw.dropped_files.clone());
         dropped.iter().for_each(|file| self.open(file.path().to_owned()));
@@ -399,6 +349,7 @@ impl App {
         let placement = self.canvas.placement.as_ref();
         let command = if asks { None } else { shortcuts::apply(ui.ctx(), document, placement) };
         Panel::right("panels").default_size(320.0).show(ui, |ui| panels::show(ui, document, &self.stage));
+        let wants_path = document.wants_path.take();
         let canvas = CentralPanel::no_frame()
             .show(ui, |ui| canvas::show(ui, document, &self.stage, screen.size(), self.probe.as_ref()));
         self.canvas = canvas.inner;
@@ -406,6 +357,11 @@ impl App {
             Some(Command::Next) => self.current = (self.current + 1) % self.documents.len(),
             Some(Command::Close) => self.close(self.current),
             None => {}
+        }
+        if let Some(purpose) = wants_path {
+            self.ask(purpose, false);
+            // Where the question is asked in the window, it is there with the next frame.
+            self.context.request_repaint();
         }
     }
 

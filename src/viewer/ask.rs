@@ -12,6 +12,10 @@ pub enum Purpose {
     OpenPhoto,
     /// A scene file to take the look from.
     OpenLook,
+    /// A CSV file of radius and value, for the veil's function.
+    OpenTable,
+    /// A picture of a point's light, for the veil's function.
+    OpenKernel,
     /// A file for the photo with its glare.
     SavePicture,
     /// A file for the glare alone.
@@ -45,6 +49,8 @@ impl Purpose {
         match self {
             Self::OpenPhoto => ["Open a photo", "Open"],
             Self::OpenLook => ["Open a look, as a scene file", "Open"],
+            Self::OpenTable => ["Open a function, as a table of radius and value (.csv)", "Open"],
+            Self::OpenKernel => ["Open a function, as a picture of a point's light", "Open"],
             Self::SavePicture => ["Save the picture (.exr .hdr .pfm .tif .png .jpg)", "Save"],
             Self::SaveGlare => ["Save the glare alone (.exr .hdr .pfm .tif .png .jpg)", "Save"],
             Self::SaveLook => ["Save the look, as a scene file (.toml)", "Save"],

@@ -60,7 +60,8 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<()> {
     let look = match &args.scene {
         Some(path) => Look::from_scene(read_scene(path)?)?,
-        None => Look { lens: LookLens::preset(&args.preset)?, ..Look::default() },
+        // A lens brings its veil along.
+        None => Look::default().through(LookLens::preset(&args.preset)?, false)?,
     };
     if let (Some(script), Some(output)) = (&args.script, &args.script_output) {
         let device = Device::open(args.backend.backends())?;

@@ -148,19 +148,54 @@ impl Number {
     pub fn show(&self, ui: &mut Ui, value: &mut f64, reset: f64) -> Row {
         let before = *value;
         let row = self.tip(reset).row_of(ui, |ui| {
-            let slider = Slider::new(value, self.range.clone())
-                .show_value(false)
-                .logarithmic(self.logarithmic)
-                // What a file says beyond the range stays until it is set here.
-                .clamping(SliderClamping::Edits)
-                .smallest_positive(1e-3);
-            let rail = ui.add(slider);
-            let speed = (self.range.end() - self.range.start()) / 500.0;
-            let number = ui.add(self.digits(value, speed));
+            let (rail, number) = self.slider(ui, value);
             (rail.rect, rail | number)
         });
         settle(value, before, row.back.then_some(reset));
         row
+    }
+
+    /// A row of a number that may be left open, by a box before its slider. While it is, `open` is shown, which is what comes of that
+    /// and is called so; `reset` is what a double click on the name sets.
+    pub fn optional(&self, ui: &mut Ui, value: &mut Option<f64>, (open, called): (f64, &str), reset: Option<f64>) {
+        let mut now = value.unwrap_or(open);
+        let before = now;
+        let reset_told = reset.map_or_else(|| called.to_owned(), brief);
+        let tip = Tip {
+            name: self.name,
+            about: self.about,
+            span: format!("{}; or {called}", self.span()),
+            reset: reset_told,
+        };
+        let row = tip.row_of(ui, |ui| {
+            let mut set = value.is_some();
+            let check = ui.checkbox(&mut set, "");
+            if check.changed() {
+                *value = set.then_some(open);
+            }
+            // As wide as the others with the box before it.
+            ui.spacing_mut().slider_width -= check.rect.width() + ui.spacing().item_spacing.x;
+            let (rail, number) = self.slider(ui, &mut now);
+            (rail.rect, check | rail | number)
+        });
+        if row.back {
+            *value = reset;
+        } else if now != before && now.is_finite() {
+            *value = Some(now);
+        }
+    }
+
+    /// The slider and the number.
+    fn slider(&self, ui: &mut Ui, value: &mut f64) -> (Response, Response) {
+        let slider = Slider::new(value, self.range.clone())
+            .show_value(false)
+            .logarithmic(self.logarithmic)
+            // What a file says beyond the range stays until it is set here.
+            .clamping(SliderClamping::Edits)
+            .smallest_positive(1e-3);
+        let rail = ui.add(slider);
+        let speed = (self.range.end() - self.range.start()) / 500.0;
+        (rail, ui.add(self.digits(value, speed)))
     }
 
     /// A row without a slider; `speed` is by how much a drag over a point changes it.

@@ -14,9 +14,10 @@ use super::task::{State, Task};
 /// What comes back sooner without a path was never shown: nobody is that quick.
 const SHOWN: Duration = Duration::from_millis(500);
 
-/// A photo's extensions, and a scene file's.
+/// A photo's extensions, a scene file's, and a table's.
 const PHOTOS: [&str; 8] = ["exr", "hdr", "pfm", "tif", "tiff", "png", "jpg", "jpeg"];
 const SCENES: [&str; 1] = ["toml"];
+const TABLES: [&str; 2] = ["csv", "txt"];
 
 /// A dialog that is open.
 pub struct Dialog {
@@ -64,7 +65,10 @@ impl Dialog {
         let mut dialog = FileDialog::new().set_title(title);
         dialog = match purpose {
             Purpose::OpenLook | Purpose::SaveLook => dialog.add_filter("Scene files", &SCENES),
-            Purpose::OpenPhoto | Purpose::SavePicture | Purpose::SaveGlare => dialog.add_filter("Pictures", &PHOTOS),
+            Purpose::OpenTable => dialog.add_filter("Tables", &TABLES),
+            Purpose::OpenPhoto | Purpose::OpenKernel | Purpose::SavePicture | Purpose::SaveGlare => {
+                dialog.add_filter("Pictures", &PHOTOS)
+            }
         };
         dialog = dialog.add_filter("All files", &["*"]);
         let folder = if likely.is_dir() { Some(likely) } else { likely.parent() };
@@ -76,8 +80,8 @@ impl Dialog {
         }
         let task = Task::start("dialog", wake, move || match purpose {
             Purpose::OpenPhoto => dialog.pick_files(),
-            Purpose::OpenLook => dialog.pick_file().map(|path| vec![path]),
-            _ => dialog.save_file().map(|path| vec![path]),
+            Purpose::OpenLook | Purpose::OpenTable | Purpose::OpenKernel => dialog.pick_file().map(|path| vec![path]),
+            Purpose::SavePicture | Purpose::SaveGlare | Purpose::SaveLook => dialog.save_file().map(|path| vec![path]),
         })?;
         Ok(Self { purpose, started: Instant::now(), task })
     }

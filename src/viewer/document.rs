@@ -7,6 +7,7 @@ use std::sync::Arc;
 use glam::{DMat3, DVec2};
 
 use super::app::LookFile;
+use super::ask::Purpose;
 use super::model::{History, Look, LookLens};
 use super::viewing::Viewing;
 use crate::Result;
@@ -33,7 +34,7 @@ pub struct Document {
     /// The side of the square of the file's pixels whose mean is one that is shown.
     pub shrunk: u32,
     /// The means, where they are not the file's own pixels.
-    means: Option<Vec<[f32; 4]>>,
+    pub(super) means: Option<Arc<Vec<[f32; 4]>>>,
     /// From its primaries to Rec.709's, where they differ.
     pub gamut: Option<DMat3>,
     /// What was found in it, and by which rules.
@@ -66,6 +67,10 @@ pub struct Document {
     pub(super) seen: u64,
     /// Whether it lets go of its pixels and could not be read again.
     pub(super) unreadable: bool,
+    /// What a panel wants a path for, until it has been asked.
+    pub(super) wants_path: Option<Purpose>,
+    /// Why the veil is not as it was last set.
+    pub(super) veil_fault: Option<String>,
     /// Whether a control of the threshold is at hand, so that what it tells from the rest is to be seen.
     pub(super) sets_threshold: bool,
 }
@@ -87,6 +92,7 @@ impl Document {
             1 => (photo.frame, None),
             side => shrink(&photo, side),
         };
+        let means = means.map(Arc::new);
         Self {
             path: path.to_owned(),
             gamut: photo.to_rec709(),
@@ -110,18 +116,20 @@ impl Document {
             selected_ghost: None,
             seen: 0,
             unreadable: false,
+            wants_path: None,
+            veil_fault: None,
             sets_threshold: false,
         }
     }
 
     /// The pixels that are shown, linear RGBA, row by row from the top.
     pub fn pixels(&self) -> &[[f32; 4]] {
-        self.means.as_ref().unwrap_or(&self.photo.pixels)
+        self.means.as_deref().unwrap_or(&self.photo.pixels)
     }
 
     /// The bytes of its pixels.
     pub(super) fn bytes(&self) -> usize {
-        size_of::<[f32; 4]>() * (self.photo.pixels.len() + self.means.as_ref().map_or(0, Vec::len))
+        size_of::<[f32; 4]>() * (self.photo.pixels.len() + self.means.as_ref().map_or(0, |means| means.len()))
     }
 
     /// Lets go of the pixels, and of all else of the file that is not needed to show what is set.
@@ -239,6 +247,7 @@ impl Document {
     /// Sets another look altogether.
     pub fn set_look(&mut self, look: Look) {
         self.look = look;
+        self.veil_fault = None;
         self.fit_unit();
         self.drop_selection();
     }
@@ -248,6 +257,7 @@ impl Document {
         self.record(false);
         self.history.undo();
         self.look.clone_from(self.history.look());
+        self.veil_fault = None;
         self.fit_unit();
         self.drop_selection();
     }
@@ -257,6 +267,7 @@ impl Document {
         self.record(false);
         self.history.redo();
         self.look.clone_from(self.history.look());
+        self.veil_fault = None;
         self.fit_unit();
         self.drop_selection();
     }

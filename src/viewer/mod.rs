@@ -15,6 +15,7 @@
 //! | `loader` | files, read in the background |
 //! | `timings` | how long the last frames took |
 //! | `study` | what is found out about a picture at rest, in the background |
+//! | `veiling` | the veil of the photo that is shown |
 //! | `task` | other work in the background |
 //! | `canvas` | the picture under the pointer: moving, magnifying, the lights' handles, the loupe |
 //! | `panels` | the controls, one file a panel |
@@ -45,6 +46,7 @@ mod status;
 mod study;
 mod task;
 mod timings;
+mod veiling;
 mod viewing;
 mod window;
 

@@ -52,7 +52,7 @@ pub enum Step {
     Drop(PathBuf),
     /// Waits until nothing is being read.
     Load,
-    /// Frames until none is due within a second.
+    /// Frames until none is due within a second, and no veil is being computed.
     Rest,
     /// So many frames without input.
     Idle(usize),
@@ -286,8 +286,13 @@ impl Player {
     }
 
     fn rest(&mut self) -> Result<()> {
+        let started = Instant::now();
         for _ in 0..MOST_FRAMES {
             self.frame(Vec::new())?;
+            while self.app.is_veiling() && started.elapsed() < PATIENCE {
+                std::thread::sleep(Duration::from_millis(5));
+                self.frame(Vec::new())?;
+            }
             if self.due > Duration::from_secs(1) {
                 return Ok(());
             }

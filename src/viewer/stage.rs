@@ -1,24 +1,25 @@
 //! The picture on the device. Computes what has changed since it was last asked, and nothing else.
 
+mod show;
+
 use std::rc::Rc;
 use std::time::Instant;
-
-use glam::DVec2;
 
 use super::document::Document;
 use super::loader::Wake;
 use super::model::{self, Accuracy, Look, Work};
 use super::study::{Picture, Study};
 use super::timings::Timings;
-use super::viewing::{Placement, Shows};
+use super::veiling::Veiling;
+use super::viewing::Shows;
 use crate::frame::Frame;
-use crate::gpu::{Device, Region, Screen};
+use crate::gpu::{Device, Screen};
 use crate::job::{self, Known};
 use crate::look::Gathered;
 use crate::plan::Plan;
 use crate::problem::Problem;
-use crate::renderer::{Live, Mask, Part, Settings, View};
-use crate::scene::{Emission, Goal};
+use crate::renderer::{Live, Settings, View};
+use crate::scene::Goal;
 use crate::{Error, Result};
 
 /// The tolerance of a preview, unless the look's own is coarser: half a code of an 8-bit display is 2e-3 of white.
@@ -31,6 +32,8 @@ pub struct Counts {
     pub uploads: u64,
     /// Plans made, each with the spectrum that it asks for.
     pub spectra: u64,
+    /// Veils summed.
+    pub veils: u64,
     /// Pictures composited.
     pub composites: u64,
     /// Regions of the screen drawn.
@@ -50,6 +53,8 @@ pub struct Times {
     pub composite: f64,
     /// Drawing all of the picture on the screen.
     pub view: f64,
+    /// Planning and summing the veil, in the background.
+    pub veil: f64,
 }
 
 /// What the picture on the device was made from.
@@ -93,6 +98,7 @@ pub struct Stage {
     times: Times,
     timings: Timings,
     study: Study,
+    veiling: Veiling,
 }
 
 impl Stage {
@@ -110,7 +116,8 @@ impl Stage {
             counts: Counts::default(),
             times: Times::default(),
             timings: Timings::default(),
-            study: Study::new(wake),
+            study: Study::new(wake.clone()),
+            veiling: Veiling::new(wake),
         })
     }
 
@@ -124,6 +131,7 @@ impl Stage {
             self.made = Made::default();
             self.live.picture.field.forget_scene();
             self.live.picture.load(document.frame, document.pixels())?;
+            self.veiling.clear();
             self.counts.uploads += 1;
             self.made.document = Some(number);
         }
@@ -136,7 +144,7 @@ impl Stage {
             return Ok(());
         }
         self.made.refused = None;
-        match self.render(document, &look, shows, preview) {
+        match self.render(number, document, &look, shows, preview) {
             Err(error @ Error::Gl(_)) => return Err(error),
             Err(error) => self.made.refused = Some((look, error.to_string())),
             Ok(()) => self.made.preview = preview,
@@ -145,7 +153,7 @@ impl Stage {
     }
 
     /// Does again what a look that has changed asks for.
-    fn render(&mut self, document: &Document, look: &Look, shows: Shows, preview: bool) -> Result<()> {
+    fn render(&mut self, number: u64, document: &Document, look: &Look, shows: Shows, preview: bool) -> Result<()> {
         let mut work = self.made.look.as_ref().map_or(Work::Lights, |made| model::work(made, look));
         if preview != self.made.preview {
             work = work.max(Work::Plan);
@@ -156,6 +164,9 @@ impl Stage {
         }
         // A unit that cannot be had is told before anything is made in another.
         let whole = look.frame(&document.photo)?;
+        // A preview is no other veil.
+        let (known, frame) = (document.known_look(), document.frame.in_units_of(whole.unit));
+        self.veiling.ask(number, document, frame, &known, shows == Shows::Glare)?;
         if work >= Work::Ghosts {
             self.made.scene = Some(look.gather_from(Some(document.found.clone())));
         }
@@ -176,6 +187,10 @@ impl Stage {
             settings.constant =
                 *constant.get_or_insert_with(|| self.live.picture.field.constant_term().unwrap_or_default());
         }
+        if self.veiling.load(&mut self.live.picture, document, shows == Shows::Glare)? {
+            self.made.picture = None;
+        }
+        settings.overlay = self.veiling.weights();
         if self.made.picture == Some((settings, shows)) {
             return Ok(());
         }
@@ -228,62 +243,6 @@ impl Stage {
         started.elapsed().as_secs_f64() * 1e3
     }
 
-    /// Shows the document on its place of the screen.
-    ///
-    /// # Errors
-    /// [`crate::Error::Gl`] where the driver refuses.
-    pub fn show(
-        &mut self,
-        document: &Document,
-        placement: &Placement,
-        surround: [f32; 3],
-        screen: &Screen,
-    ) -> Result<()> {
-        let width = f64::from(placement.region.width);
-        let wipe = match (document.viewing.shows, document.viewing.wipe) {
-            (Shows::Photo, _) => width,
-            _ if self.made.picture.is_none() => width,
-            (_, Some(wipe)) => wipe * width,
-            (_, None) => 0.0,
-        };
-        let view = View { wipe, surround, ..view(document, placement.origin, placement.pitch) };
-        let started = Instant::now();
-        let region = placement.region;
-        let shown = Shown { view, uploads: self.counts.uploads, composites: self.counts.composites };
-        let size = [region.width, region.height];
-        let canvas = match self.canvas.take() {
-            Some((canvas, was)) if was == shown && canvas.size() == size => canvas,
-            old => {
-                let reused = old.map(|(canvas, _)| canvas).filter(|canvas| canvas.size() == size);
-                let canvas = reused.map_or_else(|| Screen::hidden(self.live.picture.field.device(), size), Ok)?;
-                self.draw(document, &view, &canvas, canvas.whole())?;
-                canvas
-            }
-        };
-        canvas.copy_to(screen, region);
-        self.canvas = Some((canvas, shown));
-        self.times.view = self.elapsed(started);
-        self.timings.keep(self.counts.composites, self.times);
-        Ok(())
-    }
-
-    /// Marks on the screen which pixels of the shown photo are light by the threshold as it is set, searched for or not.
-    ///
-    /// # Errors
-    /// [`crate::Error::Gl`] where the driver refuses.
-    pub fn mask(&mut self, document: &Document, placement: &Placement, screen: &Screen) -> Result<()> {
-        let threshold = document.look.find.threshold.unwrap_or(document.found.threshold);
-        let mask = Mask {
-            threshold,
-            // A lamp in the dark outshines its neighbours, too.
-            firefly_limit: if document.found.fireflies > 0 { document.look.find.firefly_limit } else { 0.0 },
-            emission: Emission::of(&document.photo),
-            origin: placement.origin,
-            pitch: placement.pitch,
-        };
-        self.live.mask(&mask, screen, placement.region)
-    }
-
     /// Looks into the picture as the document wants it, unless it is a preview or `moving`. Says whether there is news
     /// to be shown, and, while it is moving, whether there is something to begin afterwards.
     ///
@@ -308,6 +267,16 @@ impl Stage {
         Ok((news || known, false))
     }
 
+    /// Takes in a veil that has been summed.
+    pub fn take_in(&mut self) {
+        self.veiling.take_in();
+    }
+
+    /// The veil of the picture.
+    pub fn veiling(&self) -> &Veiling {
+        &self.veiling
+    }
+
     /// What is known of the picture on the device.
     pub fn known(&self) -> &Study {
         &self.study
@@ -323,50 +292,6 @@ impl Stage {
         self.timings.tick(time);
     }
 
-    /// Shows a part of the document again, as the loupe does: `center` of the picture in the middle of a region, each of
-    /// its pixels a square of `side` pixels of the screen.
-    ///
-    /// # Errors
-    /// [`crate::Error::Gl`] where the driver refuses.
-    pub fn magnify(
-        &mut self,
-        document: &Document,
-        center: DVec2,
-        side: u32,
-        before: bool,
-        screen: &Screen,
-        region: Region,
-    ) -> Result<()> {
-        let pitch = 1.0 / f64::from(side);
-        let half = DVec2::new(f64::from(region.width), f64::from(region.height)) * (0.5 * pitch);
-        let wipe = if before { f64::from(region.width) } else { 0.0 };
-        self.draw(document, &View { wipe, ..view(document, center - half, pitch) }, screen, region)
-    }
-
-    fn draw(&mut self, document: &Document, view: &View, screen: &Screen, region: Region) -> Result<()> {
-        self.counts.views += 1;
-        match self.made.picture {
-            Some((settings, shows)) if !self.made.drawn => {
-                let part = if shows == Shows::Glare { Part::Glare } else { Part::Picture };
-                let frame = self.made.frame.unwrap_or(document.frame);
-                self.live.view_mixed(frame, &settings, part, view, screen, region)
-            }
-            _ => self.live.view(view, screen, region),
-        }
-    }
-
-    /// A pixel of the photo and of the picture, linear, where there are both.
-    ///
-    /// # Errors
-    /// [`crate::Error::Gl`] where the driver refuses.
-    pub fn pixel(&mut self, document: &Document, column: u32, row: u32) -> Result<Option<[[f32; 4]; 2]>> {
-        if self.made.picture.is_none() {
-            return Ok(None);
-        }
-        self.draw_picture(document)?;
-        Ok(self.live.picture.pixel(column, row))
-    }
-
     /// Leaves the stage empty, so that everything is computed anew.
     pub fn clear(&mut self) {
         self.made = Made::default();
@@ -374,6 +299,7 @@ impl Stage {
         self.live.unload();
         self.live.picture.field.forget_scene();
         self.plan = None;
+        self.veiling.clear();
     }
 
     /// The plan of the picture on the device.
@@ -388,17 +314,18 @@ impl Stage {
 
     /// Why there is no picture of the look that was asked for last; that on the device is of another then.
     pub fn problem(&self) -> Option<&str> {
-        self.made.refused.as_ref().map(|(_, reason)| reason.as_str())
+        let refused = self.made.refused.as_ref().map(|(_, reason)| reason.as_str());
+        refused.or_else(|| self.veiling.problem())
     }
 
     /// How often each kind of work was done.
     pub fn counts(&self) -> Counts {
-        self.counts
+        Counts { veils: self.veiling.effort().0, ..self.counts }
     }
 
     /// How long each kind of work last took.
     pub fn times(&self) -> Times {
-        self.times
+        Times { veil: self.veiling.effort().1, ..self.times }
     }
 }
 
@@ -421,10 +348,4 @@ fn wanted(document: &Document, preview: bool) -> Look {
         look.accuracy = Accuracy { goal, allow_floor: true, ..look.accuracy };
     }
     look
-}
-
-/// A document without surroundings, the picture from the first column on.
-fn view(document: &Document, origin: DVec2, pitch: f64) -> View {
-    let (exposure, tone_map) = (document.viewing.exposure, document.viewing.tone_map);
-    View { origin, pitch, exposure, tone_map, gamut: document.gamut, wipe: 0.0, surround: [0.0; 3] }
 }

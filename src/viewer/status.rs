@@ -23,7 +23,7 @@ pub struct Status {
     pub evaluator: Option<Evaluator>,
     /// Whether there is something to undo, and to redo.
     pub steps: [bool; 2],
-    /// Whether a photo is being read or a picture written.
+    /// Whether a photo is being read, a veil computed, or a picture written.
     pub busy: bool,
     /// Whether the window asks for a path.
     pub asks: bool,
@@ -62,7 +62,7 @@ impl Status {
             strength: document.map(|document| document.look.strength),
             evaluator: app.plan().map(|plan| plan.evaluator()),
             steps: document.map(super::Document::steps).unwrap_or_default(),
-            busy: app.is_reading() || app.is_writing(),
+            busy: app.is_reading() || app.is_writing() || app.is_veiling(),
             asks: app.asks(),
             dialog: app.asks_elsewhere(),
             notices: app.notices().to_vec(),

@@ -284,3 +284,62 @@ fn the_mask_marks_what_the_search_takes_for_light() {
         }
     });
 }
+
+#[test]
+fn what_is_laid_over_is_a_weighted_sum_in_the_picture_in_the_glare_and_in_every_view() {
+    let frame = Frame::full(60, 40);
+    let photo: Vec<_> = (0..60 * 40u32).map(|k| [(k * 7919 % 100) as f32 / 200.0, 0.1, 0.3, 0.5]).collect();
+    let ghosts = [scenes::one([0.3, -0.2], 0.4, [0.2, 0.1, 0.3])];
+    let layer = |seed: u32| -> Vec<[f32; 4]> {
+        let value = |k: u32| (k.wrapping_mul(seed) % 97) as f32 / 97.0;
+        (0..60 * 40).map(|k| [value(k), value(k + 7) - 0.3, value(k * 3), 9.0]).collect()
+    };
+    let layers: Vec<_> = [7919, 104_729, 1_299_709, 15_485_863].map(layer).into();
+    let weights = [[0.25, 0.0, 1.0], [0.5; 3], [-0.125, 0.25, 0.125], [0.0625, 1.5, 0.5]];
+    for backend in Backend::ALL {
+        on_live(backend, |live| {
+            live.picture.load(frame, &photo).unwrap();
+            live.picture.field.set_scene(&plan(&ghosts, frame, &Request::new(1e-3)).unwrap()).unwrap();
+            let without = live.picture.glare(frame, &Settings::default()).unwrap();
+            for count in [4, 1, 3, 0] {
+                live.picture.lay_over(&layers[..count]).unwrap();
+                let mut settings = Settings::default();
+                settings.overlay[..count].copy_from_slice(&weights[..count]);
+                for part in [Part::Picture, Part::Glare] {
+                    match part {
+                        Part::Picture => live.picture.draw(frame, &settings).unwrap(),
+                        Part::Glare => live.picture.draw_glare(frame, &settings).unwrap(),
+                    }
+                    let mut drawn = photo.clone();
+                    live.picture.fetch(frame, &mut drawn).unwrap();
+                    for (at, drawn) in drawn.iter().enumerate() {
+                        for channel in 0..3 {
+                            let below = if part == Part::Picture { photo[at][channel] } else { 0.0 };
+                            let laid = layers[..count].iter().zip(weights);
+                            let laid: f64 =
+                                laid.map(|(layer, weight)| weight[channel] * f64::from(layer[at][channel])).sum();
+                            let wanted = f64::from(below) + f64::from(without[at][channel]) + laid;
+                            assert!((f64::from(drawn[channel]) - wanted).abs() < 1e-6, "{backend} {count} {part:?}");
+                        }
+                        assert_eq!(drawn[3], if part == Part::Picture { 0.5 } else { 1.0 });
+                    }
+                    for (pitch, at, wipe) in [(1.0, 0.0, 0.0), (0.4, 7.25, 11.0), (2.5, -3.0, 0.0), (14.0, -100.0, 0.0)]
+                    {
+                        let screen = Screen::hidden(live.picture.field.device(), [45, 35]).unwrap();
+                        let view = View { pitch, origin: DVec2::splat(at), wipe, ..view() };
+                        live.view(&view, &screen, screen.whole()).unwrap();
+                        let drawn = screen.read();
+                        live.view_mixed(frame, &settings, part, &view, &screen, screen.whole()).unwrap();
+                        let off = |(a, b): (&[u8; 4], &[u8; 4])| (0..4).map(|c| a[c].abs_diff(b[c])).max();
+                        let worst = drawn.iter().zip(&screen.read()).filter_map(off).max().unwrap();
+                        assert!(worst <= 1, "{backend} {count} {part:?} pitch {pitch}: {worst} codes apart");
+                    }
+                }
+            }
+            // What goes back to the CPU has nothing laid over it.
+            live.picture.lay_over(&layers).unwrap();
+            let settings = Settings { overlay: weights, ..Settings::default() };
+            assert_eq!(bits(&live.picture.glare(frame, &settings).unwrap()), bits(&without));
+        })
+    }
+}

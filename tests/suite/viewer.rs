@@ -3,6 +3,7 @@
 mod files;
 mod ghosts;
 mod many;
+mod veil;
 
 use std::path::Path;
 use std::rc::Rc;

@@ -95,7 +95,10 @@ impl Session {
     }
 
     fn click(&mut self, name: &str) {
-        let pos = self.app.control(name).unwrap_or_else(|| panic!("{name} is not shown")).center();
+        self.click_at(self.app.control(name).unwrap_or_else(|| panic!("{name} is not shown")).center());
+    }
+
+    fn click_at(&mut self, pos: Pos2) {
         let button =
             |pressed| Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE };
         self.frame(vec![Event::PointerMoved(pos)]);

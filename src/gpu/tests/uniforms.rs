@@ -35,6 +35,7 @@ fn words(kind: &str, name: &str, numbers: &[u8]) -> (Vec<String>, Vec<u32>) {
         "float" => vec![format!("floatBitsToUint({name})")],
         "int" | "uint" => vec![format!("uint({name})")],
         "double" => ["x", "y"].map(|half| format!("unpackDouble2x32({name}).{half}")).to_vec(),
+        "mat4x3" => (0..4).flat_map(|column| components(&format!("{name}[{column}]"), 3, true)).collect(),
         "mat3" => (0..3).flat_map(|column| components(&format!("{name}[{column}]"), 3, true)).collect(),
         "uvec4" | "ivec4" if numbers.len() > 4 => {
             let plain = (0..numbers.len() / 4).flat_map(|at| components(&format!("{name}[{at}]"), 4, false));
@@ -75,6 +76,12 @@ fn held<T: Pod + Sync>(paths: &[&str], (block, binding): (&str, Binding), value:
     }
 }
 
+/// Four columns of three numbers from the first on.
+fn columns(first: u8) -> [[f32; 4]; 4] {
+    let number = |at: u8| f32::from(first + at);
+    [0, 3, 6, 9].map(|at| [number(at), number(at + 1), number(at + 2), 0.0])
+}
+
 const BLOCK: (&str, Binding) = ("BINDING_PASS", PASS);
 
 #[test]
@@ -87,9 +94,11 @@ fn shaders_read_the_uniforms_of_the_composite_as_they_are_written() {
         strength: 17.0,
         flat: 18.0,
         pad: [19.0, 20.0],
+        overlay: columns(21),
     };
     let vectors = [("scale", 1..=4), ("constant", 5..=8), ("light_gain", 9..=12), ("luminance", 13..=16)];
-    let given = [&vectors[..], &[("strength", 17..=17), ("flat_span", 18..=18)]].concat();
+    let rest = [("strength", 17..=17), ("flat_span", 18..=18), ("overlay_weights", 21..=32)];
+    let given = [&vectors[..], &rest].concat();
     held(&["composite.frag"], BLOCK, value, &given);
 }
 
@@ -111,6 +120,7 @@ fn shaders_read_the_uniforms_of_the_view_as_they_are_written() {
         wipe: 30.0,
         means: 31,
         coarse: [32.0, 33.0],
+        overlay: columns(34),
     };
     let given = [
         ("gamut", 1..=9),
@@ -128,6 +138,7 @@ fn shaders_read_the_uniforms_of_the_view_as_they_are_written() {
         ("wipe", 30..=30),
         ("means", 31..=31),
         ("coarse", 32..=33),
+        ("overlay_weights", 34..=45),
     ];
     held(&["view.frag"], BLOCK, value, &given);
 }

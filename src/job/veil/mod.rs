@@ -1,6 +1,7 @@
 //! The veil of a photo: planned, computed, held against its definition, and what it does to the picture.
 
 mod account;
+mod layers;
 mod measure;
 mod planned;
 mod planning;
@@ -15,19 +16,20 @@ use crate::certificate::Verify;
 use crate::choices::Normalize;
 use crate::frame::Frame;
 use crate::look::{Look, Veil as Wanted};
-use crate::photo::{Alpha, Photo, View};
+use crate::photo::{Photo, View};
 use crate::psf::Fault;
 use crate::scene::Emission;
-use crate::veil::{self, Geometry, Plan, Predicted};
+use crate::veil::{self, Geometry, Predicted};
 use crate::{Error, Result};
 
 pub use account::{Ledger, NoSources, VeilError, Veiled};
 use account::{Loss, ledger, no_sources};
+pub use layers::{MOST_LAYERS, VeilLayers, VeilSums};
 use measure::{brightest, looked_at, measured};
 pub use planned::VeilPlanned;
 #[cfg(feature = "laboratory")]
 pub(crate) use planning::plan_of;
-use planning::{Definition, at_least};
+use planning::{Channel, Definition, Held, Pixels};
 use summing::{Summed, computed, summed};
 #[cfg(feature = "laboratory")]
 pub(crate) use trials::{Trial, trials};
@@ -46,7 +48,7 @@ pub(super) struct Prepared {
     geometry: Geometry,
     size: [usize; 2],
     /// A plan and a kernel for all channels, or one for each.
-    channels: Vec<(Plan, Definition)>,
+    channels: Vec<Channel>,
     /// The tolerance that it is held to.
     asked: f64,
 }
@@ -54,17 +56,25 @@ pub(super) struct Prepared {
 /// Plans the veil of a look for pixels of a frame, which is the photo's, or that of a photo made larger or smaller.
 fn prepared(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame, stages: &mut Stages) -> Result<Prepared> {
     check(look, wanted)?;
+    let (view, geometry) = on_pixels(look, wanted, photo, frame)?;
+    let size = size(frame);
+    let pixels = Pixels { geometry: &geometry, size, border: wanted.border };
+    let (channels, asked) = stages.time("veil plan", || Held::new(look, wanted).channels(wanted.psf(), pixels))?;
+    Ok(Prepared { view, geometry, size, channels, asked })
+}
+
+/// How a photo was seen, where that matters, and where the pixels of a frame lie for a veil.
+fn on_pixels(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame) -> Result<(Option<View>, Geometry)> {
     let view = seen(look, wanted, photo)?.map(|view| view.resized(&photo.frame, frame));
     // A look that is made larger is so by its veil, too, where that is on the picture's plane.
     let enlarged = frame.in_units_of(frame.unit * look.size);
     let geometry = wanted.geometry(&enlarged, view.as_ref()).map_err(told)?;
-    let size = [frame.window.width as usize, frame.window.height as usize];
-    let (channels, asked) = stages.time("veil plan", || {
-        // What nobody asked for need not be had.
-        let least = look.accuracy.allow_floor || !wanted.is_held();
-        at_least(wanted, &geometry, size, wanted.tolerance(), least)
-    })?;
-    Ok(Prepared { view, geometry, size, channels, asked })
+    Ok((view, geometry))
+}
+
+/// Columns and rows of the pixels of a frame.
+fn size(frame: &Frame) -> [usize; 2] {
+    [frame.window.width as usize, frame.window.height as usize]
 }
 
 /// How the veil of a look would be computed on the pixels of a frame, which is the photo's, or that of a photo made larger or
@@ -93,8 +103,8 @@ pub(super) fn cast(
 ) -> Result<Option<Cast>> {
     let Some(wanted) = look.veil.as_ref().filter(|_| look.strength != 0.0) else { return Ok(None) };
     let Prepared { view, geometry, size, channels, asked } = prepared(look, wanted, photo, frame, stages)?;
-    let weighed = weighed(photo);
-    let sources = weighed.as_ref().map_or(&photo.pixels, |pixels| pixels);
+    let weighed = weighed(Emission::of(photo), &photo.pixels);
+    let sources = weighed.as_ref().unwrap_or(&photo.pixels);
     let sources = veil::Photo::rgba(sources.as_flattened(), size).map_err(failed)?;
     let Summed { veil: mut computed, by, note } =
         stages.time("veil", || summed(&channels, &sources, asked, computer))?;
@@ -184,24 +194,23 @@ fn failed(error: veil::Error) -> Error {
     }
 }
 
-/// The photo's pixels by their share of the light, where straight alpha makes that another than all.
-fn weighed(photo: &Photo) -> Option<Vec<[f32; 4]>> {
-    (photo.source.alpha == Alpha::Straight).then(|| {
-        let emission = Emission::of(photo);
+/// Pixels by their share of the light, where straight alpha makes that another than all.
+fn weighed(emission: Emission, pixels: &[[f32; 4]]) -> Option<Vec<[f32; 4]>> {
+    emission.straight.then(|| {
         let share = |&pixel: &[f32; 4]| {
             let share = emission.share(&pixel);
             pixel.map(|value| value * share)
         };
-        photo.pixels.par_iter().map(share).collect()
+        pixels.par_iter().map(share).collect()
     })
 }
 
 /// Gaussians of the mixture.
-fn terms(channels: &[(Plan, Definition)]) -> usize {
+fn terms(channels: &[Channel]) -> usize {
     channels.iter().map(|(_, definition)| definition.terms()).max().unwrap_or(0)
 }
 
-fn predicted(channels: &[(Plan, Definition)]) -> Predicted {
+fn predicted(channels: &[Channel]) -> Predicted {
     let worst = channels.iter().map(|(plan, _)| plan.predicted()).max_by(|a, b| a.bound.total_cmp(&b.bound));
     worst.expect("there is a kernel").clone()
 }

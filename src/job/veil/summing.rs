@@ -1,10 +1,11 @@
 //! A veil, summed: by the CPU, or by the device where that costs less.
 
-use super::{Definition, failed};
+use super::failed;
+use super::planning::Channel;
 use crate::choices::Processor;
 use crate::job::Computer;
 use crate::plan::CostModel;
-use crate::veil::{Photo, Plan, Veil};
+use crate::veil::{Photo, Veil};
 use crate::{Error, Result};
 
 /// What a pixel costs the CPU beside its multiply-adds, in these: its passage up and down the lattices.
@@ -25,7 +26,7 @@ pub(super) struct Summed {
 /// # Errors
 /// Those of [`Plan::evaluate`], and of [`crate::renderer::Scatter::evaluate`] where the device was asked for.
 pub(super) fn summed(
-    channels: &[(Plan, Definition)],
+    channels: &[Channel],
     sources: &Photo<'_>,
     asked: f64,
     computer: Option<&mut Computer>,
@@ -47,7 +48,7 @@ pub(super) fn summed(
 }
 
 /// What costs less by a cost model, of what holds the tolerance.
-fn cheaper(channels: &[(Plan, Definition)], asked: f64, model: &CostModel) -> Processor {
+fn cheaper(channels: &[Channel], asked: f64, model: &CostModel) -> Processor {
     let mut more = 0.0;
     for (plan, _) in channels {
         let Some(planned) = plan.on_device().filter(|planned| planned.bound() <= asked) else {
@@ -62,11 +63,11 @@ fn cheaper(channels: &[(Plan, Definition)], asked: f64, model: &CostModel) -> Pr
 }
 
 /// The veil by the CPU.
-pub(super) fn computed(channels: &[(Plan, Definition)], sources: &Photo<'_>) -> Result<Veil> {
+pub(super) fn computed(channels: &[Channel], sources: &Photo<'_>) -> Result<Veil> {
     joined(channels.iter().map(|(plan, _)| plan.evaluate(sources).map_err(failed)).collect::<Result<_>>()?)
 }
 
-fn by_device(channels: &[(Plan, Definition)], sources: &Photo<'_>, computer: &mut Computer) -> Result<Veil> {
+fn by_device(channels: &[Channel], sources: &Photo<'_>, computer: &mut Computer) -> Result<Veil> {
     let scatter = computer.scatter()?;
     joined(channels.iter().map(|(plan, _)| scatter.evaluate(plan, sources)).collect::<Result<_>>()?)
 }
@@ -88,9 +89,10 @@ fn joined(mut all: Vec<Veil>) -> Result<Veil> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::veil::{Border, Gaussian, Geometry, Kernel, Mixture};
+    use crate::job::veil::planning::Definition;
+    use crate::veil::{Border, Gaussian, Geometry, Kernel, Mixture, Plan};
 
-    fn planned(geometry: Geometry, terms: &[[f64; 2]]) -> (Plan, Definition) {
+    fn planned(geometry: Geometry, terms: &[[f64; 2]]) -> Channel {
         let terms = terms.iter().map(|&[sigma, weight]| Gaussian { sigma, weight }).collect();
         let kernel = Kernel::from_mixture(Mixture { terms, ..Mixture::default() }).expect("a kernel");
         let plan = Plan::new(&geometry, &kernel, [160, 90], Border::None, 1e-2).expect("a plan");

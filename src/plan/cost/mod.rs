@@ -85,7 +85,8 @@ pub(super) fn field(evaluator: Evaluator, precision: Precision, size: &Size, fra
     let window = frame.window;
     let pixels = window.pixels() as f64;
     let rows = |rows: f64, columns: f64| {
-        rows * size.terms * model.profile + rows * columns * f64::from(size.degree[0] + 1) * model.harmonic
+        rows * size.terms * model.profile
+            + rows * columns * (f64::from(size.degree[0] + 1) + AROUND_HARMONICS) * model.harmonic
     };
     match evaluator {
         Evaluator::Direct | Evaluator::Local => 0.0,
@@ -227,6 +228,9 @@ const LISTED: f64 = 6.0;
 /// llvmpipe, which goes once through each of two loops that have nothing to do, for 2 to 8 ghosts.
 const AROUND_BELLS: f64 = 3.0;
 const ENDING: f64 = 2.0;
+
+/// What a row's pixel takes beside its harmonics, in harmonics: on llvmpipe, by `rows` of degree 2 to 12.
+const AROUND_HARMONICS: f64 = 1.5;
 
 /// How many times as long `direct` takes for a bell where there are more ghosts than a uniform block holds: 3 to 5 times
 /// on llvmpipe, and a graphics card has other reasons to take the series then.

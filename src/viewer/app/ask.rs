@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use egui::{Panel, Ui};
 
 use super::App;
+use crate::psf::Name;
 use crate::viewer::ask::{Answer, Ask, Purpose};
 use crate::viewer::dialog::{self, Dialog};
 use crate::viewer::document::Document;
@@ -110,12 +111,23 @@ impl App {
         let shown = std::mem::replace(&mut self.current, index);
         match purpose {
             Purpose::OpenLook => self.open_look(&path),
+            Purpose::OpenTable => self.open_psf(Name::Table, &path),
+            Purpose::OpenKernel => self.open_psf(Name::Kernel, &path),
             Purpose::SaveLook => self.save_look(&path),
             Purpose::SavePicture => self.export(Subject::Picture, &path),
             Purpose::SaveGlare => self.export(Subject::Glare, &path),
             Purpose::OpenPhoto => {}
         }
         self.current = shown;
+    }
+
+    /// Takes the function of a file for the veil of the document that is shown. Where there is none in it, the veil stays.
+    fn open_psf(&mut self, name: Name, path: &Path) {
+        let Some(document) = self.document_mut() else { return };
+        document.veil_fault = None;
+        if let Err(fault) = document.look.choose_psf_file(name, path) {
+            self.notice(fault.reason);
+        }
     }
 
     /// What a dialog elsewhere asks.
@@ -143,7 +155,7 @@ pub fn likely(document: &Document, purpose: Purpose) -> PathBuf {
     let stem = document.path.file_stem().unwrap_or_default().to_string_lossy();
     let beside = |name: String| document.path.with_file_name(name);
     match purpose {
-        Purpose::OpenPhoto | Purpose::OpenLook => {
+        Purpose::OpenPhoto | Purpose::OpenLook | Purpose::OpenTable | Purpose::OpenKernel => {
             document.path.parent().map(|folder| folder.join("")).unwrap_or_default()
         }
         Purpose::SavePicture => beside(format!("{stem}-glare.exr")),

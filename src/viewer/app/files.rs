@@ -5,9 +5,9 @@ use std::time::{Duration, Instant, SystemTime};
 
 use egui::{CentralPanel, Panel, ProgressBar, ThemePreference, Ui};
 
+use super::App;
 use super::ask::{Questions, likely};
 use super::menu::{mark, recent};
-use super::{App, VEIL_UNSEEN};
 use crate::options::command_line;
 use crate::scene::{read_scene, write_scene};
 use crate::viewer::ask::Purpose;
@@ -114,12 +114,8 @@ impl App {
             (Err(error), _) => self.notice(error.to_string()),
             (Ok(_), None) => {}
             (Ok(look), Some(document)) => {
-                let veiled = look.veil.is_some();
                 document.file = Some(LookFile::new(path, &look));
                 document.set_look(look);
-                if veiled {
-                    self.notice(VEIL_UNSEEN.to_owned());
-                }
             }
         }
     }

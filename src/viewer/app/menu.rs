@@ -30,6 +30,10 @@ impl App {
                 let menu = ui.menu_button("File", |ui| self.menu(ui, &mut chosen));
                 mark(ui, "File", "Photos, pictures and looks", &menu.response);
                 self.steps(ui);
+                if self.is_veiling() {
+                    ui.add_space(12.0);
+                    ui.weak("Computing the veil…");
+                }
                 if let Some(done) = &self.files.done {
                     ui.add_space(12.0);
                     ui.add(Label::new(RichText::new(done).weak()).truncate());

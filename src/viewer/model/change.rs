@@ -53,6 +53,17 @@ pub fn work(old: &Look, new: &Look) -> Work {
     }
 }
 
+/// Whether the veil of two looks is one on the same photo, in its strength and in its weights, too.
+pub fn same_veil(old: &Look, new: &Look) -> bool {
+    // All fields by name here as well; ghosts and their light have nothing to do with it.
+    #[rustfmt::skip]
+    let Look {
+        description: _, lens: _, unit, fov, axis: _, size, tint: _, lights: _, ghosts: _, find: _, strength, veil, mix: _, normalize, accuracy,
+    } = new;
+    (old.unit, old.fov, old.size, old.strength) == (*unit, *fov, *size, *strength)
+        && (&old.veil, old.normalize, old.accuracy.allow_floor) == (veil, *normalize, accuracy.allow_floor)
+}
+
 #[cfg(test)]
 mod tests {
     use glam::DVec2;

@@ -4,8 +4,9 @@ mod change;
 mod edits;
 mod history;
 mod state;
+mod veil;
 
-pub use change::{Work, work};
+pub use change::{Work, same_veil, work};
 pub use history::History;
 pub use state::{State, Theme};
 

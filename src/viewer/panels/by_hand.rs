@@ -61,7 +61,7 @@ fn degree(ui: &mut Ui, document: &mut Document, stage: &Stage) {
 fn period(ui: &mut Ui, document: &mut Document, stage: &Stage) {
     let (opened, before) = (document.opened.accuracy.period, document.look.accuracy.period);
     let mut period = before;
-    let span = "T₁ and T₂, 0.1 to 100 half picture heights; planned where it is not set".to_owned();
+    let span = "T₁ and T₂, 0.1 to 100 of the look's unit; planned where it is not set".to_owned();
     let reset = opened.map_or("planned".into(), |DVec2 { x, y }| format!("{} and {}", brief(x), brief(y)));
     let about = "Period of the series in x and y; by hand wherever a bell is periodic itself.";
     let tip = Tip { name: "Period", about, span, reset };

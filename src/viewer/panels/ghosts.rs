@@ -19,7 +19,7 @@ const fn place(name: &'static str) -> Number {
     Number {
         name,
         about: "Where the ghost's centre is, from the picture's; it may be off the picture.",
-        unit: "half picture heights",
+        unit: "of the look's unit",
         range: -1e6..=1e6,
         logarithmic: false,
     }
@@ -29,7 +29,7 @@ const fn size(name: &'static str) -> Number {
     Number {
         name,
         about: "The ghost's size along this axis: σ, or half the width of a bell that ends.",
-        unit: "half picture heights",
+        unit: "of the look's unit",
         range: 1e-4..=1e4,
         logarithmic: false,
     }

@@ -41,7 +41,7 @@ const fn size(name: &'static str) -> Number {
     Number {
         name,
         about: "The ghost's size for a point of light: σ, or half the width of a bell that ends.",
-        unit: "half picture heights",
+        unit: "of the look's unit",
         range: 1e-4..=100.0,
         logarithmic: false,
     }

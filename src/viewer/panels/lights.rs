@@ -21,7 +21,7 @@ const THRESHOLD: Number = Number {
 const MERGE: Number = Number {
     name: "Merge",
     about: "How close regions are that become one light.",
-    unit: "half picture heights",
+    unit: "of the look's unit",
     range: 0.0..=2.0,
     logarithmic: true,
 };
@@ -47,7 +47,7 @@ const PLACE: [Number; 2] = [place("Light x"), place("Light y")];
 const EXTENT: Number = Number {
     name: "Extent",
     about: "The light's rms radius along one axis; 0 is a point.",
-    unit: "half picture heights",
+    unit: "of the look's unit",
     range: 0.0..=1e6,
     logarithmic: false,
 };
@@ -58,7 +58,7 @@ const fn place(name: &'static str) -> Number {
     Number {
         name,
         about: "Where the light is, from the picture's centre; it may be off the picture.",
-        unit: "half picture heights",
+        unit: "of the look's unit",
         range: -1e6..=1e6,
         logarithmic: false,
     }
@@ -68,7 +68,7 @@ const fn flux(name: &'static str) -> Number {
     Number {
         name,
         about: "The light's radiance times its area.",
-        unit: "in the photo's unit times half picture heights squared",
+        unit: "in the photo's unit times the look's unit squared",
         range: 0.0..=1e12,
         logarithmic: false,
     }
@@ -146,7 +146,7 @@ fn row(ui: &mut Ui, document: &mut Document, index: usize) -> bool {
         if clicked || (back && light.muted) {
             document.lights_mut()[index].muted = !on && !back;
         }
-        let about = "Selects the light. Its flux is radiance times area, in half picture heights squared";
+        let about = "Selects the light. Its flux is radiance times area, in the look's unit squared";
         let text = format!("Light {number}:  {:.2e}", mean_flux(&light));
         let chosen = document.selected == Some(index);
         if done_by(ui, format!("light {number}"), about, |ui| ui.selectable_label(chosen, text)) {

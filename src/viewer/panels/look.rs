@@ -2,9 +2,10 @@
 
 use egui::{ComboBox, Ui};
 
-use super::{colour, lens};
-use crate::choices::{Mix, Normalize};
-use crate::scene::presets;
+use super::{colour, lens, veil};
+use crate::choices::{LengthUnit, Mix, Normalize};
+use crate::look::Veil;
+use crate::scene::presets::{self, NO_LENS};
 use crate::viewer::control::{Number, Tip, choice, item_of};
 use crate::viewer::document::Document;
 use crate::viewer::model::{Look, LookLens};
@@ -35,6 +36,13 @@ const MIXES: [(Mix, &str, &str); 2] = [
     (Mix::Energy, "energy", "What scatters is missing in the photo's lights; not with normalised glare"),
 ];
 
+const UNITS: [(LengthUnit, &str, &str); 4] = [
+    (LengthUnit::Height, "height", "Half the picture's height"),
+    (LengthUnit::ShortSide, "short side", "Half its shorter side, which stays when it is turned by 90°"),
+    (LengthUnit::Diagonal, "diagonal", "Half its diagonal, which does so, too"),
+    (LengthUnit::Degrees, "degrees", "As they are in the picture's middle, by its field of view"),
+];
+
 const NORMALIZE: [(Normalize, &str, &str); 3] = [
     (Normalize::None, "none", "The glare's values as they are: physical"),
     (Normalize::Clamp, "clamp", "Clamped to 0 to 1"),
@@ -55,7 +63,7 @@ const fn axis(name: &'static str) -> Number {
     Number {
         name,
         about: "Where the lens's axis meets the picture; 0 is the picture's centre.",
-        unit: "half picture heights",
+        unit: "of the look's unit",
         range: -4.0..=4.0,
         logarithmic: false,
     }
@@ -65,15 +73,25 @@ const fn axis(name: &'static str) -> Number {
 pub fn show(ui: &mut Ui, document: &mut Document, _: &Stage) {
     let (look, opened) = (&mut document.look, &document.opened);
     STRENGTH.show(ui, &mut look.strength, opened.strength);
-    preset(ui, look, &opened.lens);
+    preset(ui, look, opened);
     SIZE.show(ui, &mut look.size, opened.size);
+    let about = "What all lengths are counted in: sizes, and positions from the picture's centre. Their numbers stay.";
+    choice(ui, "Unit", about, &mut look.unit, &UNITS, opened.unit);
+    if look.unit == LengthUnit::Degrees && !look.veil.as_ref().is_some_and(Veil::is_in_degrees) {
+        veil::field_of_view(ui, document);
+    }
+    let (look, opened) = (&mut document.look, &document.opened);
     for (colour, number) in TINT.iter().enumerate() {
         number.show(ui, &mut look.tint[colour], opened.tint[colour]);
     }
     colour::of_tint(ui, "Tint", "The hue of the glare; its strongest colour stays.", &mut look.tint, opened.tint);
     AXIS[0].show(ui, &mut look.axis.x, opened.axis.x);
     AXIS[1].show(ui, &mut look.axis.y, opened.axis.y);
-    choice(ui, "Mix", "Where the glare's light comes from.", &mut look.mix, &MIXES, opened.mix);
+    let mut mix = look.mix;
+    choice(ui, "Mix", "Where the ghosts' light comes from.", &mut mix, &MIXES, opened.mix);
+    if mix != look.mix {
+        look.set_mix(mix);
+    }
     let about = "How the field's values become glare.";
     choice(ui, "Normalise", about, &mut look.normalize, &NORMALIZE, opened.normalize);
     lens::show(ui, document);
@@ -87,27 +105,31 @@ fn called(lens: &LookLens) -> String {
     }
 }
 
-fn preset(ui: &mut Ui, look: &mut Look, opened: &LookLens) {
-    let names: Vec<_> = presets::all().iter().map(|preset| preset.name).collect();
+/// The lenses that there are; one with a veil brings it along.
+fn preset(ui: &mut Ui, look: &mut Look, opened: &Look) {
+    let presets = || presets::all().iter().map(|preset| preset.name).chain([NO_LENS]);
+    let names: Vec<_> = presets().collect();
     let span = format!("one of {}, or a table of the look's own", names.join(", "));
     let about = "What the lights are seen through.";
-    let tip = Tip { name: "Lens", about, span, reset: called(opened) };
+    let tip = Tip { name: "Lens", about, span, reset: called(&opened.lens) };
     let row = tip.row(ui, |ui| {
         let list = ComboBox::from_id_salt("preset").selected_text(called(&look.lens));
         list.show_ui(ui, |ui| {
-            for preset in presets::all() {
+            for preset in presets() {
                 // A preset that is compiled in can be read; a test reads them all.
-                let Ok(lens) = preset.lens() else { continue };
+                let Ok(lens) = presets::named(preset) else { continue };
                 let chosen = matches!(&look.lens, LookLens::Preset(now) if now.name == lens.name);
                 let about = lens.description.clone();
-                if item_of(ui, &lens.name, &about, |ui| ui.selectable_label(chosen, &lens.name)) {
-                    look.lens = LookLens::Preset(lens.into());
+                if item_of(ui, preset, &about, |ui| ui.selectable_label(chosen, preset)) {
+                    let adds = look.veil.as_ref().is_some_and(|veil| veil.adds);
+                    // What cannot be had of a preset is nothing; the same test makes their veils.
+                    *look = look.clone().through(LookLens::Preset(lens.into()), adds).unwrap_or_else(|_| look.clone());
                 }
             }
         })
         .response
     });
     if row.back {
-        look.lens = opened.clone();
+        (look.lens, look.veil) = (opened.lens.clone(), opened.veil.clone());
     }
 }

@@ -11,6 +11,8 @@ mod lights;
 mod look;
 mod performance;
 mod plots;
+mod psf;
+mod veil;
 mod view;
 
 use egui::{CollapsingHeader, ScrollArea, Ui};
@@ -33,12 +35,18 @@ struct Panel {
 }
 
 /// Every panel, from the top.
-const PANELS: [Panel; 7] = [
+const PANELS: [Panel; 8] = [
     Panel {
         title: "Look",
         about: "How strong the glare is, what it looks like, and of which lens.",
         open: true,
         show: look::show,
+    },
+    Panel {
+        title: "Veil",
+        about: "What every pixel scatters over all others, and what becomes of the light.",
+        open: true,
+        show: veil::show,
     },
     Panel {
         title: "View",

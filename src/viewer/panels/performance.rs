@@ -11,11 +11,12 @@ use crate::viewer::stage::{Stage, Times};
 /// A kind of work, what it is, and its time.
 type Pass = (&'static str, &'static str, fn(&Times) -> f64);
 
-const PASSES: [Pass; 4] = [
+const PASSES: [Pass; 5] = [
     ("plan", "Weighing the ghosts and choosing degree and evaluator, on the CPU", |times| times.plan),
     ("spectrum", "The tables A, B, C, D of all ghosts", |times| times.spectrum),
     ("composite", "The field, its normalisation, and laying it over the photo", |times| times.composite),
     ("view", "Moving, magnifying and tone-mapping the picture for the screen", |times| times.view),
+    ("veil", "Planning and summing the veil, on the CPU in the background", |times| times.veil),
 ];
 
 fn vsync_id() -> Id {
@@ -43,7 +44,7 @@ pub fn show(ui: &mut Ui, _: &mut Document, stage: &Stage) {
 
 fn passes(ui: &mut Ui, stage: &Stage) {
     let (times, counts) = (stage.times(), stage.counts());
-    let done = [counts.spectra, counts.spectra, counts.composites, counts.views];
+    let done = [counts.spectra, counts.spectra, counts.composites, counts.views, counts.veils];
     Grid::new("times").num_columns(3).striped(true).show(ui, |ui| {
         for ((name, about, time), count) in PASSES.into_iter().zip(done) {
             ui.label(name).on_hover_text(about);

@@ -70,7 +70,7 @@ fn section(ui: &mut Ui, document: &mut Document, stage: &Stage) -> Option<()> {
     let about = "Which way the picture is cut; the green line over it can be dragged.";
     buttons(ui, "Cut", about, &mut cut.horizontal, &[(true, "Row", "along x"), (false, "Column", "along y")], true);
     CUT.show(ui, &mut cut.at, 0.5);
-    let axis = if cut.horizontal { "x, half picture heights" } else { "y, half picture heights" };
+    let axis = if cut.horizontal { "x, look's unit" } else { "y, look's unit" };
     let points = stage.known().section()?;
     let scale = points.iter().flat_map(|point| point.exact).fold(0.0f64, |most, value| most.max(value.abs()));
     // Powers of ten apart, the axis has numbers of few digits.

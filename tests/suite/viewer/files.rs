@@ -22,11 +22,25 @@ fn in_a_folder() -> (TempDir, Session) {
     (folder, session)
 }
 
-fn apply(photo: &Path, output: &Path, look: &Path) {
+/// `vglare apply` of a look.
+fn command(photo: &Path, output: &Path, look: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_vglare"));
     command.args(["apply", "--quiet"]).arg(photo).arg("-o").arg(output).arg("--scene").arg(look);
+    command
+}
+
+fn run(command: &mut Command) {
     let output = command.output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+fn apply(photo: &Path, output: &Path, look: &Path) {
+    run(&mut command(photo, output, look));
+}
+
+/// The same, with the glare alone in a file of its own.
+pub(super) fn apply_with(photo: &Path, output: &Path, look: &Path, glare: &Path) {
+    run(command(photo, output, look).arg("--glare").arg(glare));
 }
 
 #[test]
@@ -93,7 +107,7 @@ fn the_picture_is_saved_under_the_name_that_is_typed() {
 }
 
 /// Clicks what is called so, which must be shown.
-fn click(session: &mut Session, name: &str) {
+pub(super) fn click(session: &mut Session, name: &str) {
     let at = session.app.control(name).unwrap_or_else(|| panic!("{name} is not shown")).center();
     session.drag(at, Vec2::ZERO);
 }

@@ -1,9 +1,10 @@
 //! What every control of the panels has: what it says of itself, a way back, and keys.
 
-use vglare::choices::{Mix, Normalize};
-use vglare::look::Accuracy;
+use vglare::choices::{Border, LengthUnit, Mix, Normalize, Projection};
+use vglare::look::{Accuracy, Veil};
 use vglare::photo::ToneMap;
-use vglare::scene::{FindOptions, Ghost};
+use vglare::psf::{Luminance, Name, Parameters};
+use vglare::scene::{FindOptions, Ghost, VeilSection};
 use vglare::series::Bell;
 use vglare::viewer::{KEYS, Shows, Viewing};
 
@@ -267,4 +268,93 @@ fn a_name_goes_back_by_the_keyboard_too() {
         }
     }
     panic!("Tab does not come to the name");
+}
+
+/// A look with a veil of these parameters, of a picture of 50°.
+fn veiled(parameters: Parameters) -> Look {
+    let section = VeilSection { parameters, fov: None, projection: None, border: None, tolerance: None };
+    Look { veil: Some(Veil::new(&section, false).unwrap()), fov: Some(50.0), ..Look::default() }
+}
+
+#[test]
+fn every_control_of_a_veil_goes_back() {
+    let of = Parameters::new;
+    let widths =
+        |widths: [f64; 2]| Parameters { widths: Some(widths.to_vec()), scatter: Some(0.2), ..of(Name::Mixture) };
+    let tail =
+        |tail: [f64; 3], end| Parameters { a: Some(tail[0]), b: Some(tail[1]), g: Some(tail[2]), end, ..of(Name::Abg) };
+    let eye = Parameters { age: Some(60.0), pigment: Some(1.0), scatter: Some(0.2), ..of(Name::Cie) };
+    let dusk = Parameters { luminance: Some(Luminance::Mesopic), scatter: Some(0.5), ..of(Name::Spencer) };
+    let day = Parameters { scatter: Some(0.9), ..of(Name::Spencer) };
+    let wide = |width| Parameters { width: Some(width), scatter: Some(0.1), ..of(Name::Gaussian) };
+    let tinted = Parameters {
+        weights: Some(vec![1.0, 3.0]),
+        tints: Some(vec![[1.0; 3], [0.5, 0.0, 1.0]]),
+        ..widths([0.05, 0.4])
+    };
+    let plain = Parameters { weights: Some(vec![1.0; 2]), tints: Some(vec![[1.0; 3]; 2]), ..widths([0.02, 0.2]) };
+    let cases: [(Parameters, Parameters, &[&str]); 5] = [
+        (of(Name::Cie), eye, &["Age", "Pigment", "Scatter", "Field", "Veil error", "Projection", "Keep light", "Unit"]),
+        (day, dusk, &["Luminance", "Scatter", "Field"]),
+        (wide(0.1), wide(0.5), &["Width", "Border"]),
+        (plain, tinted, &["width 1", "width 2", "weight 1", "weight 2", "hue 1", "hue 2"]),
+        (tail([1e-4, 1e-3, 2.5], None), tail([2e-4, 2e-3, 3.0], Some(2.0)), &["A", "B", "Exponent", "End"]),
+    ];
+    let mut session = Session::of_size([480, 2600]);
+    for (opened, set, names) in cases {
+        let opened = veiled(opened);
+        session.app.add(Document::new(Path::new("lamp.exr"), lamp(), opened.clone()));
+        session.settle();
+        let document = session.document();
+        let planar = !opened.veil.as_ref().unwrap().is_in_degrees();
+        let section = VeilSection {
+            projection: (!planar).then_some(Projection::Fisheye),
+            border: planar.then_some(Border::Mirror),
+            tolerance: Some(0.02),
+            ..veiled(set).veil.unwrap().section()
+        };
+        document.look.veil = Some(Veil::new(&section, true).unwrap());
+        (document.look.fov, document.look.unit) = (Some(40.0), LengthUnit::Diagonal);
+        session.settle();
+        for name in names {
+            let told = session.told(name);
+            assert!(!told.span.is_empty() && told.about.len() > 4, "{told:?}");
+            session.go_back(&told);
+            session.settle();
+        }
+        for name in ["Veil error", "Keep light", "Border", "Scatter", "Projection"] {
+            if session.app.control(name).is_some() {
+                session.go_back(&session.told(name));
+                session.settle();
+            }
+        }
+        let look = Look { fov: opened.fov, unit: opened.unit, ..session.document().look.clone() };
+        assert_eq!(look, opened, "all of it is as it was");
+    }
+}
+
+#[test]
+fn a_veils_control_sets_what_it_says() {
+    let mut session = Session::of_size([480, 2600]);
+    session.app.add(Document::new(Path::new("lamp.exr"), lamp(), veiled(Parameters::new(Name::Cie))));
+    session.settle();
+    session.wait(|app| !app.is_veiling());
+    let veils = session.app.counts().veils;
+    // The middle of a slider, and the box before one.
+    session.click("Age");
+    session.click("Pigment");
+    let section = session.document().look.veil.as_ref().unwrap().section();
+    assert!(section.parameters.age.is_some_and(|age| (age - 60.0).abs() < 2.0), "{section:?}");
+    assert!(section.parameters.pigment.is_some_and(|pigment| (pigment - 0.6).abs() < 0.02), "{section:?}");
+    assert_eq!(session.app.counts().veils, veils, "both are weights");
+    session.click("Scatter");
+    let scatter = session.document().look.veil.as_ref().unwrap().section().parameters.scatter;
+    // Even in the logarithm, between 1e-4 and 1.
+    assert!(scatter.is_some_and(|scatter| (scatter / 0.01).ln().abs() < 0.3), "{scatter:?}");
+    let field = session.app.controls().into_iter().find(|told| told.name == "Field").unwrap();
+    session.click_at(pos2(field.label.right() + 14.0, field.part.center().y));
+    assert_eq!(session.document().look.fov, None);
+    assert!(session.app.problem().is_some_and(|said| said.contains("field of view")));
+    session.click_at(pos2(field.label.right() + 14.0, field.part.center().y));
+    assert_eq!((session.document().look.fov, session.app.problem()), (Some(50.0), None));
 }

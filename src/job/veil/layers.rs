@@ -1,0 +1,246 @@
+//! A veil apart from its picture: what takes long is summed once, and what it is multiplied by may change afterwards.
+
+use rayon::prelude::*;
+
+use super::account::Loss;
+use super::planning::{Held, Pixels};
+use super::{Ledger, check, computed, failed, ledger, light, on_pixels, raised, size, terms, weighed};
+use crate::Result;
+use crate::frame::Frame;
+use crate::look::{Look, Veil as Wanted};
+use crate::photo::Photo;
+use crate::scene::Emission;
+use crate::veil::{self, Geometry};
+
+/// The most layers that a veil has.
+pub const MOST_LAYERS: usize = 4;
+
+/// What of a look and a photo the sums of its veil depend on. Looks of equal sums differ in weights only: in strength, in the
+/// share that is scattered, in whether the photo keeps its light, and in what changes no part of a [`crate::psf::Basis`], as age
+/// and pigment do.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VeilSums {
+    /// The veils whose weighted sum it is, each of a function that scatters all of the light.
+    parts: Vec<Wanted>,
+    geometry: Geometry,
+    size: [usize; 2],
+    held: Held,
+}
+
+/// The sums of a veil.
+pub struct VeilLayers {
+    layers: Vec<Layer>,
+    /// The tolerance that it is held to, relative to the local veil.
+    pub asked: f64,
+    /// The bound of that error.
+    pub predicted: f64,
+    /// Gaussians of the mixture.
+    pub terms: usize,
+    /// What a person ought to know.
+    pub notes: Vec<String>,
+}
+
+/// One of them, where both its weight and the strength are 1.
+struct Layer {
+    /// Planes of rows.
+    planes: [Vec<f32>; 3],
+    loses: Loss,
+    ledger: Ledger,
+}
+
+impl VeilSums {
+    /// Those of a look for pixels of a frame, which is the photo's, or that of a photo made larger or smaller, with lengths in the
+    /// look's unit; and what each layer is multiplied by at strength 1, RGB. None without a veil, or at strength 0.
+    ///
+    /// # Errors
+    /// [`crate::Error::Usage`] where the look contradicts itself or the photo.
+    pub fn of(look: &Look, photo: &Photo, frame: &Frame) -> Result<Option<(Self, Vec<[f64; 3]>)>> {
+        let Some(wanted) = look.veil.as_ref().filter(|_| look.strength != 0.0) else { return Ok(None) };
+        check(look, wanted)?;
+        let (_, geometry) = on_pixels(look, wanted, photo, frame)?;
+        let (parts, weights) = wanted.parts(MOST_LAYERS);
+        let sums = Self { parts, geometry, size: size(frame), held: Held::new(look, wanted) };
+        Ok(Some((sums, weights)))
+    }
+
+    /// Sums them for the pixels of the frame, row by row from the top.
+    ///
+    /// # Errors
+    /// [`crate::Error::ToleranceBelowFloor`] where the veil cannot be had to the tolerance.
+    ///
+    /// # Panics
+    /// If there are not as many pixels as the frame had.
+    pub fn compute(&self, emission: Emission, pixels: &[[f32; 4]]) -> Result<VeilLayers> {
+        let weighed = weighed(emission, pixels);
+        let sources =
+            veil::Photo::rgba(weighed.as_deref().unwrap_or(pixels).as_flattened(), self.size).map_err(failed)?;
+        let mut all =
+            VeilLayers { layers: Vec::new(), asked: self.held.asked, predicted: 0.0, terms: 0, notes: Vec::new() };
+        for part in &self.parts {
+            let pixels = Pixels { geometry: &self.geometry, size: self.size, border: part.border };
+            let (channels, asked) = self.held.channels(part.psf(), pixels)?;
+            let veil::Veil { planes, certified, .. } = computed(&channels, &sources)?;
+            let loses = Loss::new(&part.clone().adding(false), self.geometry, self.size, 1.0);
+            let ledger = ledger(&sources, &planes, &loses);
+            all.layers.push(Layer { planes, loses, ledger });
+            all.asked = all.asked.max(asked);
+            all.predicted = certified.into_iter().fold(all.predicted, f64::max);
+            all.terms += terms(&channels);
+        }
+        all.notes.extend(raised(all.asked, self.held.asked));
+        Ok(all)
+    }
+}
+
+impl VeilLayers {
+    /// How many there are, at most [`MOST_LAYERS`].
+    pub fn count(&self) -> usize {
+        self.layers.len()
+    }
+
+    /// What one of them adds to black pixels, at the weight 1; alpha is 0.
+    pub fn alone(&self, layer: usize) -> Vec<[f32; 4]> {
+        let [red, green, blue] = self.layers[layer].planes.each_ref();
+        let colours = red.par_iter().zip(green).zip(blue);
+        colours.map(|((&red, &green), &blue)| [red, green, blue, 0.0]).collect()
+    }
+
+    /// What pixels change by through one of them, at the weight 1: less what they lose, more what falls on them; alpha is 0. What
+    /// is negative or no number loses nothing.
+    pub fn change(&self, layer: usize, pixels: &[[f32; 4]]) -> Vec<[f32; 4]> {
+        let Layer { planes, loses, .. } = &self.layers[layer];
+        let of = |(at, own): (usize, &[f32; 4])| {
+            let (_, lost) = loses.at(at);
+            let [red, green, blue] = [0, 1, 2].map(|k| (f64::from(planes[k][at]) - lost[k] * light(own[k])) as f32);
+            [red, green, blue, 0.0]
+        };
+        pixels.par_iter().enumerate().map(of).collect()
+    }
+
+    /// Where the light is, where the layers have these weights, RGB, and whether the photo keeps its own.
+    pub fn ledger(&self, weights: &[[f64; 3]], adds: bool) -> Ledger {
+        let light = self.layers.first().map_or([0.0; 3], |layer| layer.ledger.light);
+        let mut ledger = Ledger { light, kept: light, inside: [0.0; 3], lost: [0.0; 3] };
+        for (Layer { ledger: part, .. }, weights) in self.layers.iter().zip(weights) {
+            for channel in 0..3 {
+                let weight = weights[channel];
+                ledger.inside[channel] += weight * part.inside[channel];
+                let lost = if adds { 0.0 } else { weight * (light[channel] - part.kept[channel]) };
+                ledger.kept[channel] -= lost;
+            }
+        }
+        ledger.lost = [0, 1, 2].map(|channel| light[channel] - ledger.kept[channel] - ledger.inside[channel]);
+        ledger
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Stages, cast};
+    use super::*;
+    use crate::certificate::Verify;
+    use crate::choices::Projection;
+    use crate::photo::Alpha;
+    use crate::psf::{Name, Parameters};
+    use crate::scene::VeilSection;
+
+    const TOLERANCE: f64 = 1e-3;
+
+    /// A lamp in a dark room, with pixels that are half hidden, darker than black, and no number.
+    fn photo() -> Photo {
+        let pixel = |at: usize| match at {
+            200 => [900.0, 700.0, 500.0, 1.0],
+            201 => [f32::NAN, 1.0, 1.0, 1.0],
+            202 => [-0.5, 1.0, 1.0, 1.0],
+            _ => [0.02 * (at % 7) as f32, 0.05, 0.1, if at.is_multiple_of(3) { 0.5 } else { 1.0 }],
+        };
+        let mut photo = Photo::new(33, 21, (0..33 * 21).map(pixel).collect());
+        photo.source.alpha = Alpha::Straight;
+        photo
+    }
+
+    fn look(parameters: Parameters, projection: Option<Projection>, strength: f64, adds: bool) -> Look {
+        let section = VeilSection { parameters, fov: None, projection, border: None, tolerance: Some(TOLERANCE) };
+        let veil = Some(Wanted::new(&section, adds).unwrap());
+        Look { veil, strength, fov: Some(40.0), ..Look::default() }
+    }
+
+    #[test]
+    fn weighted_layers_are_the_veil_that_is_laid_over_the_photo() {
+        let (photo, aged) = (photo(), |age| Parameters { age: Some(age), ..Parameters::new(Name::Cie) });
+        let tinted = Parameters {
+            widths: Some(vec![0.05, 0.4]),
+            tints: Some(vec![[1.0, 0.5, 0.0], [0.0, 0.5, 1.0]]),
+            scatter: Some(0.2),
+            ..Parameters::new(Name::Mixture)
+        };
+        for look in [
+            look(aged(25.0), None, 1.0, false),
+            look(aged(75.0), Some(Projection::Planar), 0.7, false),
+            look(Parameters { scatter: Some(0.2), ..aged(60.0) }, None, 3.0, true),
+            look(tinted, None, 2.0, false),
+        ] {
+            let frame = look.frame(&photo).unwrap();
+            let cast = cast(&look, &photo, &frame, Verify::Sample, None, &mut Stages::default()).unwrap().unwrap();
+            let (sums, weights) = VeilSums::of(&look, &photo, &frame).unwrap().unwrap();
+            let layers = sums.compute(Emission::of(&photo), &photo.pixels).unwrap();
+            let weights: Vec<_> = weights.into_iter().map(|rgb| rgb.map(|weight| look.strength * weight)).collect();
+            let of = |layer: usize| {
+                let adds = look.veil.as_ref().unwrap().adds;
+                if adds { layers.alone(layer) } else { layers.change(layer, &photo.pixels) }
+            };
+            let laid: Vec<_> = (0..layers.count()).map(of).collect();
+            for (at, wanted) in cast.change(&photo.pixels).0.into_iter().enumerate() {
+                for (channel, wanted) in wanted.into_iter().enumerate() {
+                    let terms = laid
+                        .iter()
+                        .zip(&weights)
+                        .map(|(layer, weight)| weight[channel] * f64::from(layer[at][channel]));
+                    let (sum, size) = terms.fold((0.0, 0.0f64), |(sum, size), term| (sum + term, size + term.abs()));
+                    let off = (sum - f64::from(wanted)).abs();
+                    // Both are within the tolerance.
+                    let veil = f64::from(cast.planes[channel][at]);
+                    assert!(off <= 2.0 * TOLERANCE * veil + 1e-6 * size, "{at}: {sum} is not {wanted}");
+                }
+            }
+            let Ledger { light, kept, inside, lost } = layers.ledger(&weights, look.veil.as_ref().unwrap().adds);
+            let told = cast.veiled.ledger;
+            for (mine, told) in [(light, told.light), (kept, told.kept), (inside, told.inside), (lost, told.lost)] {
+                for channel in 0..3 {
+                    assert!(
+                        (mine[channel] - told[channel]).abs() <= 2.0 * TOLERANCE * light[channel],
+                        "{mine:?} is not {told:?}"
+                    );
+                }
+            }
+            assert!(layers.predicted > 0.0 && layers.predicted <= TOLERANCE, "{:e}", layers.predicted);
+        }
+    }
+
+    #[test]
+    fn sums_are_the_same_where_only_weights_differ() {
+        let photo = photo();
+        let cie = |scatter| Parameters { scatter, ..Parameters::new(Name::Cie) };
+        let of = |look: &Look| VeilSums::of(look, &photo, &look.frame(&photo).unwrap()).unwrap();
+        let (sums, weights) = of(&look(cie(None), None, 1.0, false)).unwrap();
+        let share = |weights: &[[f64; 3]]| weights.iter().map(|rgb| rgb[0]).sum::<f64>();
+        assert!(weights.len() == 4 && (share(&weights) - 0.375).abs() < 1e-3);
+        for (scatter, strength, adds) in [(Some(0.1), 1.0, false), (None, 2.5, false), (Some(1.0), 0.5, true)] {
+            let (other, weights) = of(&look(cie(scatter), None, strength, adds)).unwrap();
+            assert!(other == sums && (share(&weights) - scatter.unwrap_or(0.375)).abs() < 1e-3);
+        }
+        // CIE 146 at 75 is 0.532.
+        let old = Parameters { age: Some(75.0), pigment: Some(0.5), ..cie(None) };
+        let (other, weights) = of(&look(old, None, 1.0, false)).unwrap();
+        assert!(other == sums && (share(&weights) - 0.532).abs() < 1e-3);
+        assert!(of(&look(cie(None), None, 0.0, false)).is_none());
+        let others = [
+            look(cie(None), Some(Projection::Planar), 1.0, false),
+            Look { fov: Some(41.0), ..look(cie(None), None, 1.0, false) },
+            look(Parameters::new(Name::Camera), None, 1.0, false),
+        ];
+        assert!(others.iter().all(|other| of(other).unwrap().0 != sums));
+        // Of a function in degrees, the ghosts' size is no matter.
+        assert!(of(&Look { size: 2.0, ..look(cie(None), None, 1.0, false) }).unwrap().0 == sums);
+    }
+}
