@@ -1,9 +1,15 @@
 //! `apply --veil`: every pixel a source.
 
+use vglare::choices::Processor;
 use vglare::frame::{Frame, Window};
+use vglare::gpu::{Backend, Device};
+use vglare::job::{Computer, Found, Known, Stages, Unwatched, Wanted};
+use vglare::look::Look;
 use vglare::photo::{self, Photo};
+use vglare::scene::read_scene;
 
 use super::{Workplace, night};
+use crate::support::turn;
 
 const WIDTH: usize = 160;
 const HEIGHT: usize = 100;
@@ -369,5 +375,46 @@ fn stored_pixels_are_seen_where_they_lie() {
     for veil in ["cie --fov 50", "gaussian --width 0.1 --scatter 0.1", "cie --fov 50 --projection planar"] {
         let line = [words("apply wide.exr -o no.exr --lens none --veil"), words(veil)].concat();
         place.vglare(&line).failed(2, &["square pixels", "2 times as wide as high"]);
+    }
+}
+
+/// Who embeds the crate may say what sums veils; the report tells, and the veil is the same.
+#[test]
+fn a_device_sums_the_same_veil() {
+    let place = Workplace::new();
+    let photo = place.photo("in.exr");
+    let _turn = turn();
+    let device = Device::open(&Backend::ALL).unwrap_or_else(|error| panic!("this test needs GL: {error}"));
+    let software = device.info().software;
+    let mut computer = Computer::new(device, Known::default());
+    let looks = [
+        "preset = \"none\"\n[veil]\npsf = \"cie\"\nfov = 40\nprojection = \"planar\"\nborder = \"mirror\"\n",
+        "[veil]\npsf = \"mixture\"\nwidths = [0.2, 0.4]\nweights = [3, 1]\ntints = [[1, 0.5, 0], [0, 0.5, 1]]\nscatter = 0.1\n",
+    ];
+    for text in looks {
+        let look = Look::from_scene(read_scene(&place.text("look.toml", text)).unwrap()).unwrap();
+        let mut veil = |by| {
+            computer.sum_veils_by(by);
+            let found = Found::new(&look, photo::read(&photo).unwrap(), Stages::default()).unwrap();
+            let wanted = Wanted { glare: true, ..Wanted::default() };
+            let done = found.compute(Some(&mut computer), wanted, &Unwatched).unwrap();
+            done.check().unwrap();
+            (done.glare.unwrap().pixels, done.veiled.unwrap())
+        };
+        let [(by_cpu, cpu), (by_device, device)] = [Processor::Cpu, Processor::Gl].map(|by| veil(Some(by)));
+        assert_eq!([cpu.computed_by, device.computed_by], [Processor::Cpu, Processor::Gl]);
+        assert_eq!(serde_json::to_value(&device).unwrap()["computed_by"], "gl");
+        assert!(device.error.predicted >= cpu.error.predicted && device.error.predicted <= device.error.asked);
+        let mut alike = 0;
+        for (a, b) in by_cpu.as_flattened().iter().zip(by_device.as_flattened()) {
+            assert!((a - b).abs() <= 1e-4 * a.abs(), "{text}: {b:e} for {a:e}");
+            alike += usize::from(a == b);
+        }
+        // Alpha is.
+        assert!(alike < by_cpu.len() * 4, "two sums, and not one");
+        // Left to itself a software renderer is not taken.
+        if software {
+            assert_eq!(veil(None).1.computed_by, Processor::Cpu);
+        }
     }
 }
