@@ -37,11 +37,8 @@ impl Known {
                 let entry = kept.calibrations.into_iter().find(|entry| entry.key == key);
                 entry.map_or_else(Self::default, |entry| {
                     let completed = entry.nanoseconds.completed();
-                    let warning = completed.map(|_| {
-                        format!(
-                            "{} is from before there was `local`; `vglare calibrate` measures that too",
-                            path.display()
-                        )
+                    let warning = entry.nanoseconds.lacks().map(|what| {
+                        format!("{} is from before {what}; `vglare calibrate` measures that too", path.display())
                     });
                     Self { model: completed.unwrap_or(entry.nanoseconds), file: Some(path), warning }
                 })

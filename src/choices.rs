@@ -44,6 +44,25 @@ impl std::fmt::Display for Evaluator {
     }
 }
 
+/// What sums a veil.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Processor {
+    /// The processor's cores, by their vectors.
+    Cpu,
+    /// The device, by OpenGL.
+    Gl,
+}
+
+impl std::fmt::Display for Processor {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Cpu => "the CPU",
+            Self::Gl => "OpenGL",
+        })
+    }
+}
+
 /// How the field's values become glare.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "terminal", derive(clap::ValueEnum))]

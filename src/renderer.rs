@@ -1,7 +1,7 @@
 //! The main path: spectrum → field → normalise → composite.
 //!
 //! Three things, each used by those who need it: a [`Field`] evaluates a plan, a [`Picture`] lays a field's glare over a
-//! photo, and a [`Live`] shows a picture on a screen.
+//! photo, and a [`Live`] shows a picture on a screen. A [`Scatter`] sums the veil of a photo.
 //!
 //! ```no_run
 //! # use vglare::{frame::Frame, gpu::{Backend, Device}, plan::{plan, Request}, problem::Problem};
@@ -24,6 +24,7 @@ mod live;
 mod local;
 mod mask;
 mod picture;
+mod scatter;
 mod settings;
 mod spectrum;
 mod tiles;
@@ -37,6 +38,7 @@ pub use graf::{GrafRenderer, GrafScene};
 pub use live::Live;
 pub use mask::Mask;
 pub use picture::Picture;
+pub use scatter::Scatter;
 pub use settings::Settings;
 pub use view::{Part, View};
 

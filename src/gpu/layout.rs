@@ -18,6 +18,9 @@ pub(crate) const SAMPLES: Binding = ("BINDING_SAMPLES", 2);
 pub(crate) const DIRECT: Binding = ("BINDING_DIRECT", 4);
 pub(crate) const FEW_GHOSTS: Binding = ("BINDING_FEW_GHOSTS", 3);
 
+/// The taps of a veil's pass.
+pub(crate) const TAPS: Binding = ("BINDING_TAPS", 5);
+
 /// Shader storage blocks.
 pub(crate) const GHOSTS: Binding = ("BINDING_GHOSTS", 0);
 pub(crate) const PARTIALS: Binding = ("BINDING_PARTIALS", 1);
@@ -75,12 +78,13 @@ pub(crate) const LAST_UNIT: u32 = OVERLAY.1 + OVERLAY_LAYERS as u32 - 1;
 pub(crate) const LARGEST_POINT: i32 = 64;
 
 /// Every binding, for the head of every shader.
-pub(crate) const BINDINGS: [Binding; 34] = [
+pub(crate) const BINDINGS: [Binding; 35] = [
     PASS,
     EVALUATOR,
     SAMPLES,
     FEW_GHOSTS,
     DIRECT,
+    TAPS,
     GHOSTS,
     PARTIALS,
     SPECTRUM,
@@ -131,7 +135,7 @@ pub(crate) const PROFILE_HALVINGS: u32 = 13;
 
 /// Numbers that passes and their shaders have to agree on, for the head of every shader: work groups, what is done in one
 /// round of a loop, and what else a shader counts by.
-pub(crate) const NUMBERS: [Binding; 23] = [
+pub(crate) const NUMBERS: [Binding; 26] = [
     NORMALIZE_NONE,
     NORMALIZE_CLAMP,
     NORMALIZE_MINMAX,
@@ -155,6 +159,9 @@ pub(crate) const NUMBERS: [Binding; 23] = [
     ("SAMPLE_VECTORS", super::coefficients::BLOCK as u32),
     ("GRAF_LANES", super::graf::LANES),
     ("PRECISION_GROUP", super::precision::GROUP),
+    ("VEIL_TAPS", super::veil::MOST_TAPS as u32),
+    ("VEIL_PERIOD", super::veil::PERIOD as u32),
+    ("VEIL_NEAR_ROWS", super::veil::NEAR_ROWS as u32),
 ];
 
 /// One ghost as the spectrum's shader reads it.

@@ -18,6 +18,7 @@
 //! | `copy` | the yardstick of the bench |
 //! | `screen`, `mask`, `paint` | where the viewer draws; what of a photo is light; egui's shapes |
 //! | `shrink`, `view` | means of the picture, where it is made smaller; the picture as a display shows it |
+//! | `veil` | taps along an axis, from a lattice to the finer one, and at the pixels |
 //! | `precision` | how exact the driver's sin, cos and exp are, and vglare's phases |
 
 // Calling OpenGL is unsafe; each block says what makes it sound. That a device keeps its context current on this thread rests
@@ -51,6 +52,7 @@ mod shader;
 pub(crate) mod shrink;
 pub(crate) mod spectrum;
 mod timer;
+pub(crate) mod veil;
 pub(crate) mod view;
 
 #[cfg(feature = "window")]

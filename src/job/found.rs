@@ -68,9 +68,9 @@ impl<'a> Found<'a> {
     /// # Errors
     /// Those of [`Found::plan`] and [`Planned::render`].
     pub fn compute(self, computer: Option<&mut Computer>, wanted: Wanted, watch: &impl Watch) -> Result<Done<'a>> {
-        match computer.filter(|_| self.look.renders()) {
-            Some(computer) => self.plan(computer, watch)?.render(computer, wanted, watch),
-            None => self.without_ghosts(wanted, watch),
+        match computer {
+            Some(computer) if self.look.renders() => self.plan(computer, watch)?.render(computer, wanted, watch),
+            computer => self.without_ghosts(computer, wanted, watch),
         }
     }
 
@@ -91,11 +91,11 @@ impl<'a> Found<'a> {
     }
 
     /// The photo with its veil, where it has one, or as it is, and black glare.
-    fn without_ghosts(self, wanted: Wanted, watch: &impl Watch) -> Result<Done<'a>> {
+    fn without_ghosts(self, computer: Option<&mut Computer>, wanted: Wanted, watch: &impl Watch) -> Result<Done<'a>> {
         let Self { look, photo, frame, facts, bad, scene, mut stages, mut warnings, settings: _ } = self;
         let before = if bad.nan + bad.infinite > 0 { photo::not_finite(&photo.pixels) } else { 0 };
         watch.begin(Step::Computing)?;
-        let cast = veil::cast(look, &photo, &frame, wanted.verify, &mut stages)?;
+        let cast = veil::cast(look, &photo, &frame, wanted.verify, computer, &mut stages)?;
         let dark = || photo.companion(vec![[0.0, 0.0, 0.0, 1.0]; photo.frame.window.pixels()]);
         let mut glare = wanted.glare.then(dark);
         if let (Some(cast), Some(glare)) = (&cast, &mut glare) {

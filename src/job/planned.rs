@@ -40,9 +40,9 @@ impl<'a> Planned<'a> {
         // What is not finite in the photo already is no fault of the glare's.
         let before = if bad.nan + bad.infinite > 0 { photo::not_finite(&photo.pixels) } else { 0 };
         watch.begin(Step::Computing)?;
+        let cast = veil::cast(look, &photo, &frame, wanted.verify, Some(computer), &mut stages)?;
         let renderer = computer.renderer()?;
         renderer.field.set_timing(wanted.times);
-        let cast = veil::cast(look, &photo, &frame, wanted.verify, &mut stages)?;
         // Of the photo as it is: the picture takes over its memory.
         let change = cast.as_ref().map(|cast| cast.change(&photo.pixels));
         let drawn = draw(renderer, photo, &planning.plan, &settings, wanted, &mut stages);

@@ -38,11 +38,11 @@ pub struct PsfArgs {
     #[arg(long, value_name = "R,G,B;R,G,B;...", value_delimiter = ';', value_parser = colour)]
     tints: Option<Vec<[f64; 3]>>,
 
-    /// Of abg: a / (b + r^g), r in the look's unit, up to the radius END; below g = 2.05 there must be one
+    /// Of abg: a / (b + r^g), r in the look's unit, up to the radius END, nothing beyond; below g = 2.05 there must be one
     #[arg(long, value_name = "A,B,G[,END]", value_parser = tail)]
     abg: Option<Tail>,
 
-    /// Of table: a CSV file of radius, in the look's unit, and value
+    /// Of table: a CSV file of radius, in the look's unit, and value; nothing beyond its last row
     #[arg(long, value_name = "FILE")]
     table: Option<PathBuf>,
 

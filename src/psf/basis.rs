@@ -3,17 +3,16 @@
 use super::Psf;
 use super::eye::{self, Luminance};
 use super::function::Function;
-use super::parameters::Name;
 use super::parts::Part;
-use super::plane::{Abg, Term};
+use super::plane::Term;
 
 /// A function as Σ weight · part, the parts nowhere negative and each of unit energy.
 ///
 /// What age, pigment, adaptation, weights, tints or the scattered share change are the weights alone: two functions that
 /// [`Basis::shares_parts_with`] have one set of veils V_i, and each of them V = Σ w_i V_i. As no weight is negative,
 /// V_i that are within the relative error ε of theirs make a V that is within ε of its own, whatever the weights are.
-/// (Where a V_i is so dark that it is held to a share of its channel's largest, its error is that of the share: of n parts
-/// n such shares of V's largest at most, since no w_i V_i is above V.) f and k(0) are the same sums: f = Σ w_i, and k(0) = Σ w_i k_i(0).
+/// (Where V_i are so dark that they are held to a share of their channel's largest, n parts err by n such shares of V's
+/// largest at most, since no w_i V_i is above V.) f and k(0) are the same sums: f = Σ w_i, and k(0) = Σ w_i k_i(0).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Basis {
     /// Functions of their own, each with a mixture, a transform and so on.
@@ -134,7 +133,7 @@ impl Function {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Observer, Table};
+    use super::super::{Name, Observer, Table};
     use super::*;
 
     fn close(x: f64, known: f64, what: &str) {

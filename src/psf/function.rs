@@ -97,7 +97,7 @@ impl Function {
         }
     }
 
-    /// Where it ends to count for the energy.
+    /// Where it ends to count for the energy; a table and a tail of an end are 0 beyond.
     pub fn end(&self) -> f64 {
         match self {
             Self::Cie(_) | Self::Cie135(_) | Self::StilesHolladay { .. } => eye::CIE_END,
@@ -126,7 +126,7 @@ impl Function {
             // Six times the widest Gaussian, 1.5e-8 of its height.
             Self::Camera => 6.0 * Camera::WIDTHS[2],
             Self::Abg(abg) => abg.reach(),
-            Self::Table(table) => table.reach(),
+            Self::Table(table) => table.end(),
             _ if self.unit() == Unit::Degrees => 180.0,
             _ => f64::INFINITY,
         }
@@ -197,7 +197,10 @@ impl Function {
             Self::Gaussian(terms) | Self::Mixture(terms) => {
                 terms.iter().map(|term| term.energy() * (-0.5 * (term.sigma * q).powi(2)).exp()).sum()
             }
-            Self::Table(table) => hankel::transform(&|r| table.value(r), self.scale(), table.end(), q),
+            Self::Table(_) => hankel::transform_within(&|r| self.value(r), self.scale(), self.end(), q),
+            Self::Abg(abg) if abg.end.is_finite() => {
+                hankel::transform_within(&|r| self.value(r), self.scale(), abg.end, q)
+            }
             // Its rings' straight lines bend at every pixel.
             Self::Kernel(kernel) => hankel::transform(&|r| kernel.ring(r), self.scale(), kernel.end() + 1.0, q),
             Self::Abg(_) | Self::Camera => hankel::transform(&|r| self.value(r), self.scale(), 3.0 * self.scale(), q),

@@ -55,6 +55,9 @@ pub use tail::Tail;
 use function::Function;
 use parts::Part;
 
+/// Angles at which [`Psf::may_be_mixture`] looks.
+const PLACES: usize = 400;
+
 /// A point-spread function.
 ///
 /// Angles and radii are in its [`Psf::unit`]; of those in degrees the values are per steradian, of the others per
@@ -120,7 +123,7 @@ impl Psf {
         Ok(Self::of(Function::Mixture(plane::mixture(widths, weights, tints)?)))
     }
 
-    /// The tail a/(b + r^g) of Harvey and Shack, whose energy is taken to the radius `end`: without one over the plane,
+    /// The tail a/(b + r^g) of Harvey and Shack to the radius `end`, beyond which it is 0: without one over the plane,
     /// which takes a g of 2.05 or more.
     ///
     /// # Errors
@@ -134,7 +137,7 @@ impl Psf {
         Self::of(Function::Camera)
     }
 
-    /// A measured function.
+    /// A measured function, which ends where its rows end.
     pub fn table(table: Table) -> Self {
         Self::of(Function::Table(table))
     }
@@ -164,7 +167,8 @@ impl Psf {
         self.function.unit()
     }
 
-    /// k at an angle or radius; its size counts. Beyond [`Psf::end`] the formula goes on.
+    /// k at an angle or radius; its size counts. Beyond [`Psf::end`] a table, a tail that was given an end and a picture are 0,
+    /// and an eye's formula goes on.
     pub fn value(&self, at: f64) -> f64 {
         if at.is_nan() { at } else { self.scale * self.function.value(at.abs()) }
     }
@@ -224,7 +228,7 @@ impl Psf {
     }
 
     /// The transform 2π ∫ k J₀(2πνθ) θ dθ at `frequency` ν, in cycles per unit: that of the plane, which near 0 the
-    /// sphere is, of the function with all that lies beyond its end. At 0 it is the energy. Constants have none.
+    /// sphere is, of a function of the eye with all that lies beyond its end. At 0 it is the energy. Constants have none.
     pub fn transform(&self, frequency: f64) -> f64 {
         let frequency = frequency.abs();
         if frequency == 0.0 { self.energy } else { self.scale * self.function.transform(frequency) }
@@ -249,6 +253,17 @@ impl Psf {
             Some(observers) => Ok(observers.of(self)),
             None => Ok(self.fitted(range, tolerance)),
         }
+    }
+
+    /// Whether positive Gaussians may come within the relative error `tolerance` at all angles of `range`. What is told not to
+    /// be cannot be, by a look that costs nothing beside a fit; what may be is left to [`Psf::mixture`].
+    pub fn may_be_mixture(&self, range: [f64; 2], tolerance: f64) -> bool {
+        // The others are such mixtures by their formulas.
+        if !matches!(self.function, Function::Table(_) | Function::Abg(_)) {
+            return !matches!(self.function, Function::Kernel(_));
+        }
+        let places: Vec<f64> = fit::even_in_logarithm(range, PLACES).collect();
+        fit::above_convex(|at| self.function.value(at), &places) <= ((1.0 + tolerance) / (1.0 - tolerance)).ln() + 1e-9
     }
 
     /// As [`Psf::mixture`], but for functions of age of this age alone: no more Gaussians, and fewer where the core
@@ -287,7 +302,10 @@ impl Psf {
                 Some(Mixture { terms, constant: 0.0, quadratic: 0.0, error: 0.0, range }.scaled(self.scale))
             }
             Function::Part(Part::Constant, _) => Some(Mixture::of_constant(self.centre(), range)),
-            // None of what is left; of a function in degrees, nothing is.
+            // None of what is left, if anything is.
+            _ if range[0] >= self.function.reach() && self.function.value(range[1]) == 0.0 => {
+                Some(Mixture::of_constant(0.0, range))
+            }
             _ if range[0] >= self.function.reach() => Some(Mixture { error: 1.0, ..Mixture::of_constant(0.0, range) }),
             _ if range[1] <= self.flat_within() => Some(Mixture::of_constant(self.centre(), range)),
             _ => None,

@@ -141,10 +141,10 @@ pub struct Parameters {
     /// Of `abg`: g, 0.5 to 10.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub g: Option<f64>,
-    /// Of `abg`: the radius where it ends to count, in the look's unit; below g = 2.05 there must be one.
+    /// Of `abg`: the radius where it ends, in the look's unit; below g = 2.05 there must be one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub end: Option<f64>,
-    /// Of `table`: a CSV file of radius, in the look's unit, and value.
+    /// Of `table`: a CSV file of radius, in the look's unit, and value; nothing lies beyond its last row.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub table: Option<PathBuf>,
     /// Of `kernel`: a picture.

@@ -102,12 +102,12 @@ pub(super) struct Abg {
     a: f64,
     b: f64,
     g: f64,
-    /// Where it stops to count for the energy.
+    /// Where it ends: beyond, it is 0.
     pub end: f64,
 }
 
 impl Abg {
-    /// The tail of these three, which counts to the radius `end`: without one to infinity, which takes g above 2.
+    /// The tail of these three to the radius `end`: without one to infinity, which takes g above 2.
     pub fn new([a, b, g]: [f64; 3], end: Option<f64>) -> Result<Self, Fault> {
         let (a, b) = (positive("a", a)?, positive("b", b)?);
         let g = within("g", g, EXPONENTS, "the exponent of an ABg tail is from 0.5 to 10")?;
@@ -128,9 +128,9 @@ impl Abg {
         (Self { a: 1.0, ..self }, self.a)
     }
 
-    /// Its value at the radius r.
+    /// Its value at the radius r; 0 beyond its end.
     pub fn value(self, r: f64) -> f64 {
-        self.a / (self.b + r.powf(self.g))
+        if r > self.end { 0.0 } else { self.a / (self.b + r.powf(self.g)) }
     }
 
     /// The radius at which it has half its height.
@@ -138,9 +138,9 @@ impl Abg {
         self.b.powf(1.0 / self.g)
     }
 
-    /// The radius at which it has fallen to 1e-100 of its height.
+    /// The radius at which it has fallen to 1e-100 of its height, or where it ends.
     pub fn reach(self) -> f64 {
-        self.core() * 1e100_f64.powf(1.0 / self.g)
+        (self.core() * 1e100_f64.powf(1.0 / self.g)).min(self.end)
     }
 
     /// 2π ∫ r k dr to its end.

@@ -11,7 +11,7 @@ pub struct Row {
     pub value: f64,
     /// The mixture there.
     pub mixture: f64,
-    /// mixture / k − 1.
+    /// mixture / k − 1; no number where k is 0.
     pub error: f64,
     /// The energy within the angle, over all of it.
     pub encircled: f64,
@@ -54,7 +54,7 @@ impl Psf {
                 angle,
                 value,
                 mixture,
-                error: mixture / value - 1.0,
+                error: if value == 0.0 { f64::NAN } else { mixture / value - 1.0 },
                 encircled: self.energy_within(angle) / self.energy,
             }
         });

@@ -12,14 +12,15 @@ const RANGE: [f64; 2] = [1e-18, 1e18];
 ///
 /// Between two rows it is a monotone cubic in ln value over ln radius (Fritsch & Carlson 1980), so that a power law is
 /// met exactly and nothing overshoots. Before the first radius above 0 it keeps that row's value, or comes from a row
-/// at 0 as a Gaussian does. After the last row it falls on by the power of the last two rows, and no longer counts for
-/// the energy.
+/// at 0 as a Gaussian does. It ends with its last row: beyond that radius it is 0, so that its energy is all of its light.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
     /// ln radius, ln value and the slope of one over the other, of each row but one at 0.
     rows: Vec<[f64; 3]>,
     /// ln of the value at 0, where there is a row.
     centre: Option<f64>,
+    /// The radius of the last row.
+    end: f64,
 }
 
 impl Table {
@@ -52,9 +53,10 @@ impl Table {
                 format!("two rows at radii above 0 are the least, and there are {}", positive.len()),
             ));
         }
+        let last = rows[rows.len() - 1][0];
         let slopes = monotone_slopes(&positive);
         let rows = positive.iter().zip(slopes).map(|(&[x, y], slope)| [x, y, slope]).collect();
-        let mut table = Self { rows, centre };
+        let mut table = Self { rows, centre, end: last };
         let energy = table.raw_energy(table.end());
         if !(energy.is_finite() && energy > 0.0) {
             return Err(Fault::new("table", "its values are too large or too small for an energy"));
@@ -97,13 +99,7 @@ impl Table {
 
     /// The radius of the last row.
     pub fn end(&self) -> f64 {
-        self.rows[self.rows.len() - 1][0].exp()
-    }
-
-    /// The radius at which its power has fallen to 1e-100 of its last value.
-    pub(super) fn reach(&self) -> f64 {
-        let slope = self.rows[self.rows.len() - 1][2];
-        if slope < 0.0 { self.end() * (-1e100_f64.ln() / slope).min(600.0).exp() } else { f64::INFINITY }
+        self.end
     }
 
     /// The first radius above 0.
@@ -111,8 +107,11 @@ impl Table {
         self.rows[0][0].exp()
     }
 
-    /// The value at the radius r ≥ 0, per squared unit.
+    /// The value at the radius r ≥ 0, per squared unit; 0 beyond the last row.
     pub fn value(&self, r: f64) -> f64 {
+        if r > self.end {
+            return 0.0;
+        }
         let (first, last) = (self.rows[0], self.rows[self.rows.len() - 1]);
         let x = r.ln();
         if x < first[0] {
@@ -123,7 +122,7 @@ impl Table {
                 .exp();
         }
         if x >= last[0] {
-            return (last[1] + last[2] * (x - last[0])).exp();
+            return last[1].exp();
         }
         let next = self.rows.partition_point(|row| row[0] <= x);
         hermite(self.rows[next - 1], self.rows[next], x).exp()
@@ -179,15 +178,16 @@ fn hermite([x0, y0, m0]: [f64; 3], [x1, y1, m1]: [f64; 3], x: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// A power law is met between the rows and beyond them, whatever its rows are scaled by.
+    /// A power law is met between the rows, whatever these are scaled by, and ends with them.
     #[test]
     fn a_power_law_is_met_everywhere() {
         let rows: Vec<[f64; 2]> = [0.01, 0.02, 0.07, 0.3, 1.0].iter().map(|&r: &f64| [r, 5e6 * r.powf(-2.5)]).collect();
         let table = Table::new(&rows).unwrap();
         let scale = table.value(0.02) * 0.02_f64.powf(2.5);
-        for r in [0.011, 0.05, 0.5, 0.99, 1.0, 7.0] {
+        for r in [0.011, 0.05, 0.5, 0.99, 1.0] {
             assert!((table.value(r) / (scale * r.powf(-2.5)) - 1.0).abs() < 1e-12, "at {r}");
         }
+        assert_eq!([1.0 + 1e-15, 7.0, 1e300, f64::INFINITY].map(|r| table.value(r)), [0.0; 4]);
         // 2π (∫₀^r₁ r r₁^−2.5 dr + ∫ r^−1.5 dr) = 1.
         let known = TAU * scale * (0.5 * 0.01_f64.powf(-0.5) + 2.0 * (0.01_f64.powf(-0.5) - 1.0));
         assert!((known - 1.0).abs() < 1e-10, "{known}");

@@ -44,10 +44,12 @@ mod tests;
 
 pub use error::Error;
 pub use evaluate::Veil;
+pub(crate) use evaluate::{Labour, Lights, OnDevice};
 pub use geometry::{Border, Geometry};
 pub use kernel::{Gaussian, Kernel, Mixture};
 pub use photo::{BadSources, Photo};
 pub use picture::{Energy, Picture};
+pub(crate) use plan::{Layers, Near, PERIOD, Placed};
 pub use plan::{Method, Plan, Predicted};
 pub use transform::MOST_MEMORY;
 

@@ -32,6 +32,7 @@ mod range;
 mod reference;
 mod rounding;
 mod scale;
+mod scatter;
 mod scene;
 mod special;
 mod sphere;

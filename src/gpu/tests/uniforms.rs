@@ -13,6 +13,7 @@ use crate::gpu::lines::Uniforms as Line;
 use crate::gpu::mask::Mask;
 use crate::gpu::range::Step;
 use crate::gpu::shrink::Axis;
+use crate::gpu::veil::{AlongUniforms, DownUniforms, NEAR_ROWS, PixelsUniforms};
 use crate::gpu::view::View as Seen;
 
 /// A field's name, and the numbers of the words that it was given.
@@ -36,8 +37,9 @@ fn words(kind: &str, name: &str, numbers: &[u8]) -> (Vec<String>, Vec<u32>) {
         "double" => ["x", "y"].map(|half| format!("unpackDouble2x32({name}).{half}")).to_vec(),
         "mat4x3" => (0..4).flat_map(|column| components(&format!("{name}[{column}]"), 3, true)).collect(),
         "mat3" => (0..3).flat_map(|column| components(&format!("{name}[{column}]"), 3, true)).collect(),
-        "uvec4" if numbers.len() > 4 => {
-            (0..numbers.len() / 4).flat_map(|at| components(&format!("{name}[{at}]"), 4, false)).collect()
+        "uvec4" | "ivec4" if numbers.len() > 4 => {
+            let plain = (0..numbers.len() / 4).flat_map(|at| components(&format!("{name}[{at}]"), 4, false));
+            plain.map(|word| format!("uint({word})")).collect()
         }
         _ => {
             let size = kind.chars().last().and_then(|size| size.to_digit(10)).expect("a vector") as usize;
@@ -206,4 +208,44 @@ fn shaders_read_the_uniforms_of_the_direct_sum_as_they_are_written() {
     let of = |aspect: &[Given]| [&begin[..], aspect, &[("runs", runs.clone())]].concat();
     held(&["evaluators/direct.glsl"], block, value, &of(&[("aspect", 8..=11)]));
     held(&["evaluators/direct_double.glsl"], block, value, &of(&[("aspect", 8..=9), ("length_unit", 10..=11)]));
+}
+
+#[test]
+fn shaders_read_the_uniforms_of_veils_as_they_are_written() {
+    let along = AlongUniforms { first: 1, stride: 2, count: 3, end: 4, aside: 5, pad: [0; 3] };
+    let names = ["first", "stride", "count", "end", "aside"];
+    let given: Vec<Given> = (1..).zip(names).map(|(number, name)| (name, number..=number)).collect();
+    held(&["veil/along.frag"], BLOCK, along, &given);
+
+    let down = DownUniforms { first: 1, even: 2, odd: 3, end: 4 };
+    let given: Vec<Given> =
+        (1..).zip(["first", "even", "odd", "end"]).map(|(number, name)| (name, number..=number)).collect();
+    held(&["veil/down.frag"], BLOCK, down, &given);
+
+    let mut fours = [[0; 4]; NEAR_ROWS];
+    fours.as_flattened_mut().iter_mut().zip(24..).for_each(|(four, number)| *four = number);
+    let pixels = PixelsUniforms {
+        first: [1, 2],
+        size: [3, 4],
+        middle: [5.0, 6.0],
+        rows: 7,
+        pad: 0,
+        constant: [8.0, 9.0, 10.0, 11.0],
+        across: [12.0, 13.0, 14.0, 15.0],
+        down: [16.0, 17.0, 18.0, 19.0],
+        square: [20.0, 21.0, 22.0, 23.0],
+        fours,
+    };
+    let given = [
+        ("first", 1..=2),
+        ("size", 3..=4),
+        ("middle", 5..=6),
+        ("rows", 7..=7),
+        ("constant", 8..=11),
+        ("across", 12..=15),
+        ("down", 16..=19),
+        ("square", 20..=23),
+        ("fours", 24..=23 + 4 * NEAR_ROWS as u8),
+    ];
+    held(&["veil/pixels.frag"], BLOCK, pixels, &given);
 }

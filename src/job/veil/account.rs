@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::light;
-use crate::choices::{Border, Projection};
+use crate::choices::{Border, Processor, Projection};
 use crate::look::Veil as Wanted;
 use crate::psf::Parameters;
 use crate::veil::{self, BadSources, Geometry};
@@ -32,6 +32,8 @@ pub struct Veiled {
     pub centre: [f64; 3],
     /// Gaussians of the mixture.
     pub terms: usize,
+    /// What summed it.
+    pub computed_by: Processor,
     /// How exact it is, relative to the local veil.
     pub error: VeilError,
     /// What a person ought to know: of a tolerance that could not be had.

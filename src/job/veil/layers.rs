@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::account::Loss;
-use super::planning::at_least;
+use super::planning::{Held, Pixels};
 use super::{Ledger, check, computed, failed, ledger, light, on_pixels, raised, size, terms, weighed};
 use crate::Result;
 use crate::frame::Frame;
@@ -24,9 +24,7 @@ pub struct VeilSums {
     parts: Vec<Wanted>,
     geometry: Geometry,
     size: [usize; 2],
-    /// The tolerance, and whether the lowest that can be had will do.
-    asked: f64,
-    least: bool,
+    held: Held,
 }
 
 /// The sums of a veil.
@@ -61,13 +59,7 @@ impl VeilSums {
         check(look, wanted)?;
         let (_, geometry) = on_pixels(look, wanted, photo, frame)?;
         let (parts, weights) = wanted.parts(MOST_LAYERS);
-        let sums = Self {
-            parts,
-            geometry,
-            size: size(frame),
-            asked: wanted.tolerance(),
-            least: look.accuracy.allow_floor || !wanted.is_held(),
-        };
+        let sums = Self { parts, geometry, size: size(frame), held: Held::new(look, wanted) };
         Ok(Some((sums, weights)))
     }
 
@@ -82,9 +74,11 @@ impl VeilSums {
         let weighed = weighed(emission, pixels);
         let sources =
             veil::Photo::rgba(weighed.as_deref().unwrap_or(pixels).as_flattened(), self.size).map_err(failed)?;
-        let mut all = VeilLayers { layers: Vec::new(), asked: self.asked, predicted: 0.0, terms: 0, notes: Vec::new() };
+        let mut all =
+            VeilLayers { layers: Vec::new(), asked: self.held.asked, predicted: 0.0, terms: 0, notes: Vec::new() };
         for part in &self.parts {
-            let (channels, asked) = at_least(part, &self.geometry, self.size, self.asked, self.least)?;
+            let pixels = Pixels { geometry: &self.geometry, size: self.size, border: part.border };
+            let (channels, asked) = self.held.channels(part.psf(), pixels)?;
             let veil::Veil { planes, certified, .. } = computed(&channels, &sources)?;
             let loses = Loss::new(&part.clone().adding(false), self.geometry, self.size, 1.0);
             let ledger = ledger(&sources, &planes, &loses);
@@ -93,7 +87,7 @@ impl VeilSums {
             all.predicted = certified.into_iter().fold(all.predicted, f64::max);
             all.terms += terms(&channels);
         }
-        all.notes.extend(raised(all.asked, self.asked));
+        all.notes.extend(raised(all.asked, self.held.asked));
         Ok(all)
     }
 }
@@ -187,7 +181,7 @@ mod tests {
             look(tinted, None, 2.0, false),
         ] {
             let frame = look.frame(&photo).unwrap();
-            let cast = cast(&look, &photo, &frame, Verify::Sample, &mut Stages::default()).unwrap().unwrap();
+            let cast = cast(&look, &photo, &frame, Verify::Sample, None, &mut Stages::default()).unwrap().unwrap();
             let (sums, weights) = VeilSums::of(&look, &photo, &frame).unwrap().unwrap();
             let layers = sums.compute(Emission::of(&photo), &photo.pixels).unwrap();
             let weights: Vec<_> = weights.into_iter().map(|rgb| rgb.map(|weight| look.strength * weight)).collect();

@@ -2,12 +2,12 @@
 
 use rayon::prelude::*;
 
-use super::{Definition, failed, light};
+use super::{Channel, Definition, failed, light};
 use crate::Result;
 use crate::certificate::Verify;
 use crate::chance::Chance;
 use crate::choices::Border;
-use crate::veil::{self, Geometry, Kernel, Plan};
+use crate::veil::{self, Geometry, Kernel};
 
 /// Products that measuring the error may cost: at some pixels, or where every one is asked for, which large photos have too many of.
 const EFFORT: [f64; 2] = [5e6, 2e10];
@@ -45,7 +45,7 @@ pub(super) fn brightest(sources: &veil::Photo<'_>) -> usize {
 
 /// The largest error that is found at these pixels, relative to the veil there.
 pub(super) fn measured(
-    channels: &[(Plan, Definition)],
+    channels: &[Channel],
     sources: &veil::Photo<'_>,
     geometry: &Geometry,
     border: Border,

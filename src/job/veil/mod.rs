@@ -5,12 +5,13 @@ mod layers;
 mod measure;
 mod planned;
 mod planning;
+mod summing;
 #[cfg(feature = "laboratory")]
 mod trials;
 
 use rayon::prelude::*;
 
-use super::Stages;
+use super::{Computer, Stages};
 use crate::certificate::Verify;
 use crate::choices::Normalize;
 use crate::frame::Frame;
@@ -18,7 +19,7 @@ use crate::look::{Look, Veil as Wanted};
 use crate::photo::{Photo, View};
 use crate::psf::Fault;
 use crate::scene::Emission;
-use crate::veil::{self, Geometry, Plan, Predicted};
+use crate::veil::{self, Geometry, Predicted};
 use crate::{Error, Result};
 
 pub use account::{Ledger, NoSources, VeilError, Veiled};
@@ -28,7 +29,8 @@ use measure::{brightest, looked_at, measured};
 pub use planned::VeilPlanned;
 #[cfg(feature = "laboratory")]
 pub(crate) use planning::plan_of;
-use planning::{Definition, at_least};
+use planning::{Channel, Definition, Held, Pixels};
+use summing::{Summed, computed, summed};
 #[cfg(feature = "laboratory")]
 pub(crate) use trials::{Trial, trials};
 
@@ -46,7 +48,7 @@ pub(super) struct Prepared {
     geometry: Geometry,
     size: [usize; 2],
     /// A plan and a kernel for all channels, or one for each.
-    channels: Vec<(Plan, Definition)>,
+    channels: Vec<Channel>,
     /// The tolerance that it is held to.
     asked: f64,
 }
@@ -56,11 +58,8 @@ fn prepared(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame, stages: 
     check(look, wanted)?;
     let (view, geometry) = on_pixels(look, wanted, photo, frame)?;
     let size = size(frame);
-    let (channels, asked) = stages.time("veil plan", || {
-        // What nobody asked for need not be had.
-        let least = look.accuracy.allow_floor || !wanted.is_held();
-        at_least(wanted, &geometry, size, wanted.tolerance(), least)
-    })?;
+    let pixels = Pixels { geometry: &geometry, size, border: wanted.border };
+    let (channels, asked) = stages.time("veil plan", || Held::new(look, wanted).channels(wanted.psf(), pixels))?;
     Ok(Prepared { view, geometry, size, channels, asked })
 }
 
@@ -99,6 +98,7 @@ pub(super) fn cast(
     photo: &Photo,
     frame: &Frame,
     verify: Verify,
+    computer: Option<&mut Computer>,
     stages: &mut Stages,
 ) -> Result<Option<Cast>> {
     let Some(wanted) = look.veil.as_ref().filter(|_| look.strength != 0.0) else { return Ok(None) };
@@ -106,7 +106,8 @@ pub(super) fn cast(
     let weighed = weighed(Emission::of(photo), &photo.pixels);
     let sources = weighed.as_ref().unwrap_or(&photo.pixels);
     let sources = veil::Photo::rgba(sources.as_flattened(), size).map_err(failed)?;
-    let mut computed = stages.time("veil", || computed(&channels, &sources))?;
+    let Summed { veil: mut computed, by, note } =
+        stages.time("veil", || summed(&channels, &sources, asked, computer))?;
     let measured = stages.time("veil certify", || {
         let pixels = looked_at(size, brightest(&sources), verify);
         measured(&channels, &sources, &geometry, wanted.border, &computed, &pixels, asked)
@@ -129,7 +130,8 @@ pub(super) fn cast(
         scattered: wanted.psf().energies(),
         centre: wanted.psf().centres(),
         terms: terms(&channels),
-        notes: raised(asked, wanted.tolerance()).into_iter().chain(coarse(&loses, size)).collect(),
+        computed_by: by,
+        notes: raised(asked, wanted.tolerance()).into_iter().chain(coarse(&loses, size)).chain(note).collect(),
         error: VeilError { asked, predicted, measured: measured.0, pixels: measured.1 },
         ledger: ledger(&sources, &planes, &loses),
         dark,
@@ -203,25 +205,12 @@ fn weighed(emission: Emission, pixels: &[[f32; 4]]) -> Option<Vec<[f32; 4]>> {
     })
 }
 
-/// The veil, each channel by its kernel.
-fn computed(channels: &[(Plan, Definition)], sources: &veil::Photo<'_>) -> Result<veil::Veil> {
-    let mut all =
-        channels.iter().map(|(plan, _)| plan.evaluate(sources).map_err(failed)).collect::<Result<Vec<_>>>()?;
-    let mut veil = all.remove(0);
-    for (channel, mut other) in (1..).zip(all) {
-        veil.planes[channel] = std::mem::take(&mut other.planes[channel]);
-        (veil.dark[channel], veil.lonely[channel]) = (other.dark[channel], other.lonely[channel]);
-        veil.certified[channel] = other.certified[channel];
-    }
-    Ok(veil)
-}
-
 /// Gaussians of the mixture.
-fn terms(channels: &[(Plan, Definition)]) -> usize {
+fn terms(channels: &[Channel]) -> usize {
     channels.iter().map(|(_, definition)| definition.terms()).max().unwrap_or(0)
 }
 
-fn predicted(channels: &[(Plan, Definition)]) -> Predicted {
+fn predicted(channels: &[Channel]) -> Predicted {
     let worst = channels.iter().map(|(plan, _)| plan.predicted()).max_by(|a, b| a.bound.total_cmp(&b.bound));
     worst.expect("there is a kernel").clone()
 }

@@ -1,9 +1,10 @@
 //! How a veil is computed: the mixture of Gaussians, and the plan of each channel.
 
 use super::{failed, told};
+use crate::choices::Border;
 #[cfg(feature = "laboratory")]
 use crate::frame::Frame;
-use crate::look::Veil as Wanted;
+use crate::look::{Look, Veil as Wanted};
 #[cfg(feature = "laboratory")]
 use crate::photo::View;
 use crate::psf::{self, Psf, TOLERANCES};
@@ -12,6 +13,10 @@ use crate::{Error, Result};
 
 /// The part of the tolerance that the mixture of Gaussians may be off by; the rest is for how it is summed.
 const OF_MIXTURE: f64 = 0.5;
+
+/// By how much positive Gaussians may be off on a plane, over that: what is further off needs a transform. On the sphere they are
+/// but what the plan begins with.
+const LOOSER: f64 = 4.0;
 
 /// What the veil of some channels is to be.
 pub(super) enum Definition {
@@ -31,47 +36,72 @@ impl Definition {
     }
 }
 
-/// How the veil is computed to a tolerance; or, where that will do, to the lowest that can be had, and which that is.
-pub(super) fn at_least(
-    veil: &Wanted,
-    geometry: &Geometry,
-    size: [usize; 2],
-    asked: f64,
+/// How the veil of some channels is summed, and what it is to be.
+pub(super) type Channel = (Plan, Definition);
+
+/// Pictures that functions are planned for.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pixels<'a> {
+    pub geometry: &'a Geometry,
+    pub size: [usize; 2],
+    pub border: Border,
+}
+
+/// What a look holds its veil to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Held {
+    pub asked: f64,
+    /// Whether the lowest that can be had will do.
     least: bool,
-) -> Result<(Vec<(Plan, Definition)>, f64)> {
-    // A looser mixture has a floor of its own.
-    const TRIES: u32 = 4;
-    const MORE: f64 = 1.05;
-    let mut tolerance = asked;
-    for _ in 0..TRIES {
-        match channels(veil, geometry, size, tolerance) {
-            Err(Error::ToleranceBelowFloor { floor, .. }) if least && MORE * floor < 1.0 => {
-                tolerance = MORE * floor.max(tolerance);
-            }
-            planned => return Ok((planned?, tolerance)),
+}
+
+impl Held {
+    pub fn new(look: &Look, veil: &Wanted) -> Self {
+        Self {
+            asked: veil.tolerance(),
+            // What nobody asked for need not be had.
+            least: look.accuracy.allow_floor || !veil.is_held(),
         }
     }
-    channels(veil, geometry, size, tolerance).map(|planned| (planned, tolerance))
+
+    /// How the veil of a function is computed to the tolerance; or, where that will do, to the lowest that can be had, and which
+    /// that is.
+    pub fn channels(self, psf: &Psf, pixels: Pixels) -> Result<(Vec<Channel>, f64)> {
+        // A looser mixture has a floor of its own.
+        const TRIES: u32 = 4;
+        const MORE: f64 = 1.05;
+        let mut tolerance = self.asked;
+        for _ in 0..TRIES {
+            match channels(psf, pixels, tolerance) {
+                Err(Error::ToleranceBelowFloor { floor, .. }) if self.least && MORE * floor < 1.0 => {
+                    tolerance = MORE * floor.max(tolerance);
+                }
+                planned => return Ok((planned?, tolerance)),
+            }
+        }
+        channels(psf, pixels, tolerance).map(|planned| (planned, tolerance))
+    }
 }
 
 /// How the veil of each channel is computed, and what it is to be: one plan for all of them, or one each.
-fn channels(veil: &Wanted, geometry: &Geometry, size: [usize; 2], tolerance: f64) -> Result<Vec<(Plan, Definition)>> {
-    if let Some((kernel, times)) = veil.psf().picture() {
+fn channels(psf: &Psf, pixels: Pixels, tolerance: f64) -> Result<Vec<Channel>> {
+    let Pixels { geometry, size, border } = pixels;
+    if let Some((kernel, times)) = psf.picture() {
         let picture = picture(kernel, times)?;
-        let plan = Plan::for_picture(&picture, size, veil.border, tolerance).map_err(failed)?;
+        let plan = Plan::for_picture(&picture, size, border, tolerance).map_err(failed)?;
         return Ok(vec![(plan, Definition::Picture(picture))]);
     }
     let plan = |kernel: Kernel| {
         let Mixture { terms, constant, quadratic } = kernel.mixture();
         let plan = if terms.is_empty() && *constant == 0.0 && *quadratic == 0.0 {
-            Plan::for_profile(geometry, |distance| kernel.at(distance), size, veil.border, tolerance)
+            Plan::for_profile(geometry, |distance| kernel.at(distance), size, border, tolerance)
         } else {
-            Plan::new(geometry, &kernel, size, veil.border, tolerance)
+            Plan::new(geometry, &kernel, size, border, tolerance)
         };
         Ok((plan.map_err(failed)?, Definition::Radial(kernel)))
     };
     let of_mixture = (OF_MIXTURE * tolerance).max(TOLERANCES[0]);
-    kernels(veil, geometry, size, of_mixture)?.into_iter().map(plan).collect()
+    kernels(psf, pixels, of_mixture)?.into_iter().map(plan).collect()
 }
 
 /// The plan of a veil that is the same for all channels, for benches.
@@ -82,25 +112,18 @@ fn channels(veil: &Wanted, geometry: &Geometry, size: [usize; 2], tolerance: f64
 pub(crate) fn plan_of(veil: &Wanted, frame: &Frame, view: Option<&View>, tolerance: f64) -> Result<Plan> {
     let geometry = veil.geometry(frame, view).map_err(told)?;
     let size = [frame.width as usize, frame.height as usize];
-    let mut channels = channels(veil, &geometry, size, tolerance)?;
+    let mut channels = channels(veil.psf(), Pixels { geometry: &geometry, size, border: veil.border }, tolerance)?;
     Ok(channels.swap_remove(0).0)
 }
 
 /// The kernels that the channels have: one for all of them, or one each.
-fn kernels(veil: &Wanted, geometry: &Geometry, size: [usize; 2], tolerance: f64) -> Result<Vec<Kernel>> {
-    let psf = veil.psf();
-    let range = geometry.angles(size, veil.border);
-    let mut mixture = psf.mixture(range, tolerance).map_err(told)?;
-    // Positive ones may come less close.
-    let mut looser = 2.0 * tolerance;
-    while !mixture.is_positive() && looser < TOLERANCES[1] {
-        mixture = psf.mixture(range, looser).map_err(told)?;
-        looser *= 2.0;
-    }
+fn kernels(psf: &Psf, pixels: Pixels, tolerance: f64) -> Result<Vec<Kernel>> {
+    let range = pixels.geometry.angles(pixels.size, pixels.border);
+    let is_planar = matches!(pixels.geometry, Geometry::Planar { .. });
     let wanted: Psf = psf.clone();
     let value = move |angle: f64| wanted.value(angle);
-    if !mixture.is_positive() {
-        if !matches!(geometry, Geometry::Planar { .. }) {
+    let Some(mixture) = positive(psf, range, tolerance, if is_planar { LOOSER } else { f64::INFINITY })? else {
+        if !is_planar {
             return Err(Error::Plan(format!(
                 "{} is like no sum of positive Gaussians, and on the sphere no other veil is computed: --projection planar takes it",
                 psf.name()
@@ -108,16 +131,37 @@ fn kernels(veil: &Wanted, geometry: &Geometry, size: [usize; 2], tolerance: f64)
         }
         let none = Mixture { terms: Vec::new(), constant: 0.0, quadratic: 0.0 };
         return Ok(vec![Kernel::new(value, none).map_err(failed)?]);
-    }
+    };
     let of = |channel: usize| {
         let term = |term: &psf::Term| Gaussian { sigma: term.sigma, weight: term.weight * term.tint[channel] };
         let terms = mixture.terms.iter().map(term).collect();
         Mixture { terms, constant: mixture.constant, quadratic: mixture.quadratic }
     };
-    if mixture.terms.iter().any(|term| term.tint != [1.0; 3]) {
-        return (0..3).map(|channel| Kernel::from_mixture(of(channel)).map_err(failed)).collect();
+    if mixture.terms.iter().all(|term| term.tint == [1.0; 3]) {
+        return Ok(vec![Kernel::new(value, of(0)).map_err(failed)?]);
     }
-    Ok(vec![Kernel::new(value, of(0)).map_err(failed)?])
+    // A grey tint is the same for all channels.
+    let grey = mixture.terms.iter().all(|term| term.tint == [term.tint[0]; 3]);
+    let channels = if grey { 0..1 } else { 0..3 };
+    channels.map(|channel| Kernel::from_mixture(of(channel)).map_err(failed)).collect()
+}
+
+/// A mixture of positive Gaussians within `tolerance`, or, as positive ones may come less close, up to `looser` times that; none
+/// where there is none.
+fn positive(psf: &Psf, range: [f64; 2], tolerance: f64, looser: f64) -> Result<Option<psf::Mixture>> {
+    let mut within = tolerance;
+    loop {
+        if psf.may_be_mixture(range, within) {
+            let mixture = psf.mixture(range, within).map_err(told)?;
+            if mixture.is_positive() {
+                return Ok(Some(mixture));
+            }
+        }
+        within *= 2.0;
+        if within > looser * tolerance || within >= TOLERANCES[1] {
+            return Ok(None);
+        }
+    }
 }
 
 /// A picture as a kernel, so many times what it is.

@@ -1,4 +1,4 @@
-//! Veils against a copy of the picture. They are computed on the CPU, so the copy is what ties their times to the frame's.
+//! Veils against a copy of the picture: by the CPU, whose times the copy ties to the frame's, and by the device where it can.
 
 use std::hint::black_box;
 
@@ -13,6 +13,7 @@ use crate::measure::{Samples, interleave};
 use crate::photo::View;
 use crate::plan::Evaluator;
 use crate::psf::{Name, Parameters};
+use crate::renderer::Scatter;
 use crate::scene::VeilSection;
 use crate::veil::{self, Plan};
 use crate::{Error, Result};
@@ -63,17 +64,30 @@ pub(super) fn against_a_copy(stage: &Stage, report: &mut Report) -> Result<()> {
     let pixels = photo(size);
     let sources = veil::Photo::rgba(pixels.as_flattened(), size).map_err(|error| Error::Plan(error.to_string()))?;
     let mut actor = stage.actor(&scenes::by(Evaluator::Direct, scenes::scattered(1, 0.3, frame), frame, 1e-3)?)?;
-    let mut table = Table::new("Veils of three colours, on the CPU, against a copy", "copy");
+    let mut scatter = Scatter::new(stage.shared_device())?;
+    let mut table = Table::new("Veils of three colours against a copy", "copy");
     let mut widths: Vec<Samples> = Vec::new();
     for Case { what, section, tolerance, most } in cases(f64::from(frame.width) / f64::from(frame.height)) {
         let veil = Veil::new(&section, false).map_err(|fault| Error::Plan(fault.to_string()))?;
         let view = section.fov.map(|fov| View::of_field(fov, &frame, veil.projection()));
         let plan = plan_of(&veil, &frame, view.as_ref(), tolerance)?;
         let mut evaluate = || evaluated(&plan, &sources);
-        let [copy, took] = interleave(stage.rounds, [&mut || actor.copy(), &mut evaluate] as [Arm<'_>; 2])?;
+        let by_device = scatter.check(&plan).is_ok();
+        let mut summed = || scatter.evaluate(&plan, &sources).map(|veil| drop(black_box(veil)));
+        let (copy, took, device) = if by_device {
+            let arms = [&mut || actor.copy(), &mut evaluate, &mut summed] as [Arm<'_>; 3];
+            let [copy, took, device] = interleave(stage.rounds, arms)?;
+            (copy, took, Some(device))
+        } else {
+            let [copy, took] = interleave(stage.rounds, [&mut || actor.copy(), &mut evaluate] as [Arm<'_>; 2])?;
+            (copy, took, None)
+        };
         let ratio = took.over(&copy);
         table.row(format!("copy, for {what}"), &copy, None);
         table.row(format!("{what}, {tolerance:e} asked, {:.1e} predicted", plan.predicted().bound), &took, Some(ratio));
+        if let Some(device) = device {
+            table.row(format!("{what}, by the device"), &device, Some(device.over(&copy)));
+        }
         report.bar(format!("{what}: veil / copy"), Target::AtMost(most), ratio.paired);
         if section.parameters.psf == Name::Gaussian {
             widths.push(took);

@@ -1,20 +1,22 @@
 //! Small renders that differ in one kind of work, timed in turns.
 
+use std::hint::black_box;
 use std::rc::Rc;
 use std::time::Instant;
 
 use glam::DVec2;
 
-use crate::Result;
 use crate::frame::Frame;
 use crate::gpu::Device;
 use crate::laboratory::bench::scenes::{by, by_hand, scattered};
 use crate::measure::Rounds;
 use crate::plan::{DOUBLE_ORDER, Evaluator, Gathering, Lattice, Plan, Precision, Transform};
-use crate::renderer::{Picture, Settings};
+use crate::renderer::{Picture, Scatter, Settings};
 use crate::scene::Ghost;
 use crate::series::CUBIC;
 use crate::series::moments::Cells;
+use crate::veil;
+use crate::{Error, Result};
 
 /// Milliseconds that a timing should take at least: so much that the clock and the waiting do not count.
 const LONG_ENOUGH: f64 = 8.0;
@@ -32,6 +34,10 @@ enum Work {
     Spectrum,
     /// Both.
     Everything,
+    /// A veil by the CPU.
+    VeilByCpu,
+    /// The same by the device.
+    VeilByDevice,
 }
 
 /// One thing to be timed.
@@ -40,6 +46,8 @@ pub(super) struct Arm {
     /// Which of the stage's pictures.
     picture: usize,
     pub plan: Plan,
+    /// The veil's, where it is one.
+    pub veil: Option<veil::Plan>,
     repeats: usize,
 }
 
@@ -59,6 +67,7 @@ impl Arm {
 pub(super) struct Arms {
     pub all: Vec<Arm>,
     renderers: Vec<Picture>,
+    scatter: Scatter,
 }
 
 /// The arms' places in [`Arms::all`].
@@ -80,6 +89,10 @@ pub(super) mod place {
     pub const SERIES_DOUBLE: [usize; 2] = [21, 22];
     pub const ROWS_DOUBLE: [usize; 3] = [23, 24, 25];
     pub const GRID_DOUBLE: [usize; 3] = [26, 27, 28];
+    /// A veil of few taps, and one of many.
+    pub const VEIL_BY_CPU: [usize; 2] = [29, 30];
+    /// The same; and the one of few taps on a wide picture.
+    pub const VEIL_BY_DEVICE: [usize; 3] = [31, 32, 33];
 }
 
 /// The narrow picture, the wide one and the tiny one, in pixels: a graphics card needs more to do.
@@ -101,7 +114,7 @@ impl Arms {
         let sized = |work, picture: usize, count, size, plan: &dyn Fn(&[Ghost], Frame) -> Result<Plan>| {
             let frame = frames[picture];
             let ghosts = scattered(count, size, frame);
-            Ok(Arm { work, picture, plan: plan(&ghosts, frame)?, repeats: 1 })
+            Ok(Arm { work, picture, plan: plan(&ghosts, frame)?, veil: None, repeats: 1 })
         };
         let arm = |work, picture, count, plan: &dyn Fn(&[Ghost], Frame) -> Result<Plan>| {
             sized(work, picture, count, 0.3, plan)
@@ -109,6 +122,10 @@ impl Arms {
         let few = |evaluator, degree| move |ghosts: &[Ghost], frame| by_hand(evaluator, ghosts, frame, degree);
         let direct = |ghosts: &[Ghost], frame| by(Evaluator::Direct, ghosts, frame, 1e-3);
         let local = |ghosts: &[Ghost], frame| by(Evaluator::Local, ghosts, frame, 1e-2);
+        let veil = |work, picture: usize, terms| {
+            let veil = Some(veil(frames[picture], terms)?);
+            arm(work, picture, 1, &direct).map(|arm| Arm { veil, ..arm })
+        };
         let (series, rows) =
             (|degree| few(Evaluator::Series, [degree; 2]), |degree: [u32; 2]| few(Evaluator::Rows, degree));
         let all: Result<Vec<Arm>> = [
@@ -141,10 +158,16 @@ impl Arms {
             arm(Work::Frame, 0, 4, &|ghosts, frame| Ok(in_doubles(grid(ghosts, frame, 20)?))),
             arm(Work::Frame, 0, 4, &|ghosts, frame| Ok(in_doubles(grid(ghosts, frame, 420)?))),
             arm(Work::Frame, 1, 4, &|ghosts, frame| Ok(in_doubles(grid(ghosts, frame, 20)?))),
+            veil(Work::VeilByCpu, 0, FEW_TERMS),
+            veil(Work::VeilByCpu, 0, MANY_TERMS),
+            veil(Work::VeilByDevice, 0, FEW_TERMS),
+            veil(Work::VeilByDevice, 0, MANY_TERMS),
+            veil(Work::VeilByDevice, 1, FEW_TERMS),
         ]
         .into_iter()
         .collect();
-        Ok(Self { all: all?, renderers: frames.iter().map(renderer).collect::<Result<_>>()? })
+        let renderers = frames.iter().map(renderer).collect::<Result<_>>()?;
+        Ok(Self { all: all?, renderers, scatter: Scatter::new(device)? })
     }
 
     /// Milliseconds that each arm takes, round after round; every other round runs backwards.
@@ -173,6 +196,9 @@ impl Arms {
     /// Times one arm, after readying the device for it: milliseconds for one of its repetitions.
     fn one(&mut self, index: usize) -> Result<f64> {
         let arm = &self.all[index];
+        if let Some(plan) = &arm.veil {
+            return one_veil(arm, plan, &mut self.scatter);
+        }
         let renderer = &mut self.renderers[arm.picture];
         renderer.field.set_scene(&arm.plan)?;
         renderer.draw(arm.plan.problem().frame(), &Settings::default())?;
@@ -186,12 +212,43 @@ impl Arms {
             match arm.work {
                 Work::Copy => renderer.draw_copy()?,
                 Work::Frame | Work::Everything => renderer.draw(arm.plan.problem().frame(), &Settings::default())?,
-                Work::Spectrum => {}
+                Work::Spectrum | Work::VeilByCpu | Work::VeilByDevice => {}
             }
         }
         renderer.field.finish();
         Ok(started.elapsed().as_secs_f64() * 1e3 / arm.repeats as f64)
     }
+}
+
+/// Times a veil: milliseconds for one of its repetitions.
+fn one_veil(arm: &Arm, plan: &veil::Plan, scatter: &mut Scatter) -> Result<f64> {
+    let told = |error: veil::Error| Error::Plan(error.to_string());
+    let size = plan.size();
+    let values = vec![0.5; 4 * size[0] * size[1]];
+    let photo = veil::Photo::rgba(&values, size).map_err(told)?;
+    let started = Instant::now();
+    for _ in 0..arm.repeats {
+        black_box(match arm.work {
+            Work::VeilByCpu => plan.evaluate(&photo).map_err(told)?,
+            _ => scatter.evaluate(plan, &photo)?,
+        });
+    }
+    Ok(started.elapsed().as_secs_f64() * 1e3 / arm.repeats as f64)
+}
+
+/// Gaussians of a veil, each convolved on the pixels.
+const FEW_TERMS: usize = 1;
+const MANY_TERMS: usize = 5;
+
+/// A veil of so many Gaussians, too narrow for lattices.
+fn veil(frame: Frame, terms: usize) -> Result<veil::Plan> {
+    let term = |index: usize| veil::Gaussian { sigma: 1.6 + 0.1 * index as f64, weight: 1.0 };
+    let mixture = veil::Mixture { terms: (0..terms).map(term).collect(), ..veil::Mixture::default() };
+    let told = |error: veil::Error| Error::Plan(error.to_string());
+    let plane = veil::Geometry::Planar { pitch: 1.0, solid_angle: 1.0 };
+    let size = [frame.window.width as usize, frame.window.height as usize];
+    let kernel = veil::Kernel::from_mixture(mixture).map_err(told)?;
+    veil::Plan::new(&plane, &kernel, size, veil::Border::None, 1e-3).map_err(told)
 }
 
 /// Small ghosts: of a pixel or two.

@@ -6,6 +6,7 @@ use super::arms::{Arm, Arms, moments, place};
 use crate::gpu::Device;
 use crate::measure::{Rounds, Samples};
 use crate::plan::{CostModel, GRID_PASSES};
+use crate::veil::Labour;
 use crate::{Error, Result};
 
 /// One constant of the cost model.
@@ -87,11 +88,29 @@ fn constants(arms: &[Arm], times: &[f64]) -> [f64; CostModel::COUNT] {
     let beside = reached([one, spread]) * splat + ghosts([one, spread]) * quad + more([COPY, COPY_WIDE]);
     let canvas = (more([one, spread]) - beside) / (arms[spread].pixels() - arms[one].pixels());
     let pass = 1e6 * times[TINY] / GRID_PASSES;
+    let adds = |index: usize| 3.0 * arms[index].pixels() * operations(&arms[index]);
+    let veil_add = more(VEIL_BY_CPU) / (adds(VEIL_BY_CPU[1]) - adds(VEIL_BY_CPU[0]));
+    let [few, many, wide] = VEIL_BY_DEVICE;
+    let [of_few, of_many, of_wide] = [few, many, wide].map(|index| labour(&arms[index]));
+    let passes = |one: Labour, other: Labour| (other.passes - one.passes) * pass;
+    let veil_tap = (more([few, many]) - passes(of_few, of_many)) / (of_many.taps - of_few.taps);
+    let veil_pixel = (more([few, wide]) - (of_wide.taps - of_few.taps) * veil_tap) / (of_wide.moved - of_few.moved);
     let series = [bell, term, harmonic, profile, strip, interpolation, spectrum, moment];
     let local = [splat, quad, canvas];
     let doubles = [term_double, harmonic_double, profile_double, strip_double, interpolation_double];
-    let all = series.into_iter().chain(local).chain(doubles).chain([pass]);
+    let veils = [veil_add, veil_tap, veil_pixel];
+    let all = series.into_iter().chain(local).chain(doubles).chain(veils).chain([pass]);
     all.collect::<Vec<_>>().try_into().expect("as many as there are")
+}
+
+/// Multiply-adds of an arm's veil, for each pixel and channel.
+fn operations(arm: &Arm) -> f64 {
+    arm.veil.as_ref().map_or(0.0, |plan| plan.predicted().operations)
+}
+
+/// What a device has to do for it.
+fn labour(arm: &Arm) -> Labour {
+    arm.veil.as_ref().and_then(|plan| Some(plan.on_device()?.labour())).unwrap_or_default()
 }
 
 /// The medians of the rounds; what is lost in noise follows the others.
@@ -171,7 +190,7 @@ mod tests {
         let plan = &arm.plan;
         let terms = plan.terms() as f64;
         let harmonics = f64::from(plan.degree()[0] + 1);
-        let double = index >= SERIES_DOUBLE[0];
+        let double = (SERIES_DOUBLE[0]..=GRID_DOUBLE[2]).contains(&index);
         let [term, profile, harmonic, strip, interpolation] = match double {
             false => [model.term, model.profile, model.harmonic, model.strip, model.interpolation],
             true => [
@@ -192,6 +211,11 @@ mod tests {
             k if SPECTRUM.contains(&k) => plan.ghosts() as f64 * terms * model.spectrum,
             k if MOMENTS.contains(&k) => plan.ghosts() as f64 * moments(plan) * model.moment,
             TINY => GRID_PASSES * model.pass,
+            k if VEIL_BY_CPU.contains(&k) => base + 3.0 * arm.pixels() * operations(arm) * model.veil_add,
+            k if VEIL_BY_DEVICE.contains(&k) => {
+                let Labour { taps, passes, moved } = labour(arm);
+                taps * model.veil_tap + passes * model.pass + moved * model.veil_pixel
+            }
             k if LOCAL.contains(&k) => {
                 let ghosts = plan.ghosts() as f64 * model.quad + plan.local().unwrap().reached * model.splat;
                 base + ghosts + arm.pixels() * model.canvas

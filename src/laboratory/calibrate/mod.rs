@@ -20,7 +20,7 @@ use fit::Fitted;
 
 /// Measure what each kind of work costs on this machine, and keep it
 ///
-/// The plan chooses how to compute the glare by seventeen constants, and --budget counts in them. This measures them: small
+/// The plan chooses how to compute the glare by twenty constants, and --budget counts in them. This measures them: small
 /// pictures in turns, in pairs that differ in one kind of work, medians of several rounds. They are kept in the user's
 /// cache folder (VGLARE_CACHE names another) for this renderer, driver and version of vglare, and the other commands
 /// take them from there unless --no-calibration is given. Measure while the machine does nothing else.
@@ -68,6 +68,9 @@ const MEANINGS: [&str; CostModel::COUNT] = [
     "a term of a row's profiles, by rows in doubles",
     "a node of the lattice along a row, by grid in doubles",
     "an interpolation at a pixel, by grid in doubles",
+    "a multiply-add of a veil at a pixel, by the CPU",
+    "a tap of a veil at a texel, by the device",
+    "a pixel that a veil is moved by, there and back",
     "starting a pass",
 ];
 

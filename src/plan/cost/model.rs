@@ -53,6 +53,16 @@ pub struct CostModel {
     /// The same as `interpolation`, with a B-spline of more nodes.
     #[serde(default = "lacking", skip_serializing_if = "is_lacking")]
     pub interpolation_double: f64,
+    /// One multiply-add of a veil at one pixel of one channel, by the CPU's cores together. Calibrations from before a device summed veils
+    /// lack this, and the two that follow.
+    #[serde(default = "lacking", skip_serializing_if = "is_lacking")]
+    pub veil_add: f64,
+    /// One tap of a veil at one texel, for three channels, by the device.
+    #[serde(default = "lacking", skip_serializing_if = "is_lacking")]
+    pub veil_tap: f64,
+    /// One pixel that is readied, moved to the device and back.
+    #[serde(default = "lacking", skip_serializing_if = "is_lacking")]
+    pub veil_pixel: f64,
     /// Starting a pass.
     pub pass: f64,
 }
@@ -76,6 +86,9 @@ impl Default for CostModel {
             profile_double: 10.0,
             strip_double: 50.0,
             interpolation_double: 30.0,
+            veil_add: built_in_veil_add(),
+            veil_tap: 3.0,
+            veil_pixel: 30.0,
             pass: 50_000.0,
         }
     }
@@ -84,6 +97,11 @@ impl Default for CostModel {
 /// As the others; K = 1000 and 11,000 with 144 moments each.
 fn built_in_moment() -> f64 {
     0.8
+}
+
+/// As the others; vectors of 256 bits.
+fn built_in_veil_add() -> f64 {
+    0.06
 }
 
 /// A constant that an old calibration has not: no time.
@@ -97,7 +115,7 @@ fn is_lacking(value: &f64) -> bool {
 
 impl CostModel {
     /// How many constants there are.
-    pub const COUNT: usize = 17;
+    pub const COUNT: usize = 20;
 
     /// The constants' names, in the order of [`CostModel::values`].
     pub const NAMES: [&'static str; Self::COUNT] = [
@@ -117,6 +135,9 @@ impl CostModel {
         "profile_double",
         "strip_double",
         "interpolation_double",
+        "veil_add",
+        "veil_tap",
+        "veil_pixel",
         "pass",
     ];
 
@@ -139,6 +160,9 @@ impl CostModel {
             self.profile_double,
             self.strip_double,
             self.interpolation_double,
+            self.veil_add,
+            self.veil_tap,
+            self.veil_pixel,
             self.pass,
         ]
     }
@@ -162,6 +186,9 @@ impl CostModel {
             profile_double,
             strip_double,
             interpolation_double,
+            veil_add,
+            veil_tap,
+            veil_pixel,
             pass,
         ] = values;
         Self {
@@ -181,6 +208,9 @@ impl CostModel {
             profile_double,
             strip_double,
             interpolation_double,
+            veil_add,
+            veil_tap,
+            veil_pixel,
             pass,
         }
     }
@@ -200,7 +230,7 @@ impl CostModel {
         }
     }
 
-    /// With all constants, where some are lacking: then these are to the others as they are in the built-in model.
+    /// With all constants, where some are lacking: then these are to the others as they are in the built-in model, and the CPU's as there.
     pub fn completed(&self) -> Option<Self> {
         let (values, built_in) = (self.values(), Self::default().values());
         let mut ratios: Vec<f64> = values.iter().zip(built_in).map(|(value, built_in)| value / built_in).collect();
@@ -211,7 +241,20 @@ impl CostModel {
         ratios.sort_by(f64::total_cmp);
         let ratio = ratios[ratios.len() / 2];
         let complete = |k: usize| if values[k].is_nan() { ratio * built_in[k] } else { values[k] };
-        Some(Self::from_values(std::array::from_fn(complete)))
+        let all = Self::from_values(std::array::from_fn(complete));
+        // A device says nothing of the CPU.
+        let veil_add = if self.veil_add.is_nan() { built_in_veil_add() } else { self.veil_add };
+        Some(Self { veil_add, ..all })
+    }
+
+    /// What there was not yet when this was measured, in words; none where no constant is lacking.
+    pub fn lacks(&self) -> Option<&'static str> {
+        let since = [
+            (self.splat, "there was `local`"),
+            (self.term_double, "there were series in 64-bit floats"),
+            (self.veil_tap, "devices summed veils"),
+        ];
+        since.into_iter().find_map(|(constant, what)| is_lacking(&constant).then_some(what))
     }
 
     /// Whether every constant is what a time can be: finite and above 0.

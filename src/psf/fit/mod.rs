@@ -121,6 +121,40 @@ pub(super) fn fitted(profile: &impl Profile, range: [f64; 2], tolerance: f64) ->
     if positive.error <= tolerance { positive } else { search::signed(profile, &shape, tolerance, positive) }
 }
 
+/// By how much ln of a function lies above the largest convex function of the squared angle below it, at `places` (angles that
+/// grow). Infinite where it vanishes before the last.
+///
+/// A sum of positive Gaussians is completely monotone in the squared angle, and the logarithm of such a function is convex (D. V. Widder,
+/// *The Laplace transform*, 1941, ch. IV): of one that is within ε of such a sum this is at most ln((1 + ε)/(1 − ε)).
+pub(super) fn above_convex(value: impl Fn(f64) -> f64, places: &[f64]) -> f64 {
+    let points: Vec<[f64; 2]> = places.iter().map(|&angle| [angle * angle, value(angle).ln()]).collect();
+    if points.iter().any(|[_, logarithm]| !logarithm.is_finite()) {
+        return f64::INFINITY;
+    }
+    // The lower hull (A. M. Andrew, 1979): its slopes grow.
+    let slope = |a: [f64; 2], b: [f64; 2]| (b[1] - a[1]) / (b[0] - a[0]);
+    let mut hull: Vec<[f64; 2]> = Vec::new();
+    for &point in &points {
+        while let [.., before, last] = hull[..]
+            && slope(before, last) >= slope(last, point)
+        {
+            hull.pop();
+        }
+        hull.push(point);
+    }
+    // Nor does it ever rise.
+    let rise =
+        points.iter().fold([f64::INFINITY, 0.0f64], |[least, most], [_, y]| [least.min(*y), most.max(y - least)]);
+    let below = |point: &[f64; 2]| {
+        let next = hull.partition_point(|corner| corner[0] < point[0]).clamp(1, hull.len().max(2) - 1);
+        match hull.get(next) {
+            Some(&corner) => hull[next - 1][1] + slope(hull[next - 1], corner) * (point[0] - hull[next - 1][0]),
+            None => point[1],
+        }
+    };
+    points.iter().map(|point| point[1] - below(point)).fold(rise[1], f64::max)
+}
+
 /// The best of `count` Gaussians from some starts, the first of which is the `last` fit, stretched.
 fn free(profile: &impl Profile, shape: &search::Shape, count: usize, last: Option<&Fitted>) -> Fitted {
     let samples = shape.samples(profile, count);

@@ -233,3 +233,41 @@ fn powers_are_met() {
     }
     assert!(power(0.0, [0.1, 1.0], 0.1).is_err() && growing_power(2, 1.0, [0.1, 1.0], 0.1).is_err());
 }
+
+/// What falls faster than a Gaussian of its height, steps, rises or ends is no mixture, and is known as none at once; powers,
+/// what a mixture is within its error, and what is close to one are not ruled out.
+#[test]
+fn what_no_gaussians_follow_is_known_before_a_fit() {
+    let range = [0.01, 1.0];
+    let table = |rows: &[[f64; 2]]| Psf::table(Table::new(rows).unwrap());
+    let of = |value: fn(f64) -> f64| {
+        let rows: Vec<[f64; 2]> = (0..200).map(|i| 0.009 * 1.025_f64.powi(i)).map(|r| [r, value(r)]).collect();
+        table(&rows)
+    };
+    let none = [
+        table(&[[0.01, 1.0], [0.1, 1.0], [0.11, 0.01], [1.0, 0.01]]),
+        table(&[[0.01, 1.0], [0.02, 0.1], [0.03, 0.2], [1.0, 1e-3]]),
+        table(&[[0.01, 1.0], [0.5, 0.1]]),
+        Psf::abg(1.0, 1e-4, 3.0, None).unwrap(),
+        Psf::abg(1.0, 1e-4, 1.5, Some(0.9)).unwrap(),
+        of(|r| (-15.0 * r.powi(3)).exp()),
+    ];
+    for psf in none {
+        assert!(!psf.may_be_mixture(range, 0.01), "{psf:?}");
+    }
+    let some = [
+        of(|r| r.powf(-2.5)),
+        of(|r| (-3.0 * r * r).exp()),
+        of(|r| (-3.0 * r).exp()),
+        Psf::abg(1.0, 1e-4, 1.9, Some(1.0)).unwrap(),
+        Psf::camera(),
+        Psf::cie(observer(25.0, 0.5)),
+    ];
+    for psf in some {
+        assert!(psf.may_be_mixture(range, 0.01), "{psf:?}");
+        assert!(psf.mixture(range, 0.01).unwrap().is_positive(), "{psf:?}");
+    }
+    // A ripple of 1 % is within 2 %, and not within 0.1 %.
+    let ripple = of(|r| (-3.0 * r * r).exp() * (1.0 + 0.01 * (8.0 * r.ln()).sin()));
+    assert!(ripple.may_be_mixture(range, 0.02) && !ripple.may_be_mixture(range, 1e-3));
+}

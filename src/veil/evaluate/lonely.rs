@@ -7,8 +7,8 @@
 use pulp::Arch;
 use rayon::prelude::*;
 
-use super::Finished;
 use super::moments::Moments;
+use super::{Finished, OwnLight};
 use crate::veil::photo::{Scale, Sources, exp2};
 use crate::veil::plan::{Lattice, Layers, Placed, Planar};
 use crate::veil::simd::Plane;
@@ -18,16 +18,17 @@ use crate::veil::sweep::Pyramid;
 const BATCH: usize = 2048;
 
 impl Planar {
-    /// Sums the veil of lonely pixels anew. Returns how many there are.
+    /// Sums the veil of lonely pixels anew, where own light is more than its share of their veil or of the channel's floor. Returns
+    /// how many there are.
     pub(super) fn mend(
         &self,
         sources: &mut Sources,
         rows: &[Finished],
-        floor: f64,
+        (floor, own): (f64, OwnLight),
         pyramid: &mut Pyramid<f32>,
         plane: &mut [f32],
     ) -> usize {
-        let lonely = self.lonely(sources, rows, floor, plane);
+        let lonely = self.lonely(sources, rows, (floor, own), plane);
         let scale = Scale::new(-sources.exponent);
         for batch in lonely.chunks(BATCH) {
             let lights = batch.iter().map(|[x, y]| std::mem::take(&mut sources.plane.row_mut(*y)[*x]));
@@ -49,8 +50,13 @@ impl Planar {
     }
 
     /// Where they are, by the sources' columns and rows.
-    fn lonely(&self, sources: &Sources, rows: &[Finished], floor: f64, plane: &[f32]) -> Vec<[usize; 2]> {
-        let (rest, share) = self.own_light();
+    fn lonely(
+        &self,
+        sources: &Sources,
+        rows: &[Finished],
+        (floor, OwnLight { rest, share }): (f64, OwnLight),
+        plane: &[f32],
+    ) -> Vec<[usize; 2]> {
         let scale = exp2(sources.exponent);
         let some =
             plane.chunks_exact(self.size[0]).zip(rows).enumerate().filter(|(_, (_, finished))| finished.lonely > 0);

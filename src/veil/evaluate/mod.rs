@@ -1,5 +1,6 @@
 //! A planned veil, summed.
 
+mod device;
 mod lonely;
 mod moments;
 mod pool;
@@ -18,6 +19,7 @@ use super::plan::{DIRECT, Layers, Near, OWN_SHARE, PERIOD, Placed, Plan, Planar,
 use super::reference::{self, Window};
 use super::simd::{BLOCK, Plane, Real};
 use super::sweep::{GROUP, Pyramid, Separable};
+pub(crate) use device::{Labour, Lights, OnDevice};
 use moments::Moments;
 pub(super) use pool::Pool;
 use rows::{Finished, Rows};
@@ -74,19 +76,21 @@ fn direct(photo: &Photo, geometry: &Geometry, kernel: &Kernel) -> Veil {
 pub(super) struct Workspace {
     sources: [Sources; 3],
     pyramid: Pyramid<f32>,
+    /// The sources pixel by pixel, and then the veil, where a device sums it.
+    texels: Vec<[f32; 4]>,
 }
 
 impl Planar {
     fn evaluate(&self, photo: &Photo) -> Veil {
         let mut workspace = self.pool.take(|| self.workspace());
-        let Workspace { sources, pyramid } = &mut workspace;
+        let Workspace { sources, pyramid, .. } = &mut workspace;
         let bad = photo.sources(self.border, self.margin, sources);
         let mut veil = Veil { planes: Default::default(), bad, dark: [0; 3], lonely: [0; 3], certified: [0.0; 3] };
         let layers = Ready::new(&self.layers);
         for (channel, sources) in sources.iter_mut().enumerate() {
             let (mut plane, rows) = self.sum(&layers, sources, pyramid);
             let floor = FLOOR * f64::from(rows.iter().map(|row| row.largest).fold(0.0, f32::max));
-            veil.lonely[channel] = self.mend(sources, &rows, floor, pyramid, &mut plane);
+            veil.lonely[channel] = self.mend(sources, &rows, (floor, self.own_light()), pyramid, &mut plane);
             veil.dark[channel] = self.dark(&rows, floor, &plane);
             veil.planes[channel] = plane;
         }
@@ -97,7 +101,7 @@ impl Planar {
     fn workspace(&self) -> Workspace {
         let size = [0, 1].map(|side| self.size[side] + 2 * self.margin[side]);
         let sources = [0, 1, 2].map(|_| Sources { plane: Plane::new(size[0], size[1]), exponent: 0 });
-        Workspace { sources, pyramid: Pyramid::new(size, self.layers.lattices.len()) }
+        Workspace { sources, pyramid: Pyramid::new(size, self.layers.lattices.len()), texels: Vec::new() }
     }
 
     /// The veil, and what is to be known of each of its rows.
@@ -106,9 +110,11 @@ impl Planar {
         pyramid.sweep(arch, &sources.plane, &layers.lattices);
         let (fine, moments) = (pyramid.finest(), Moments::new(&self.layers, &sources.plane));
         let [width, height] = self.size;
-        let (rest, share) = self.own_light();
-        let finish =
-            rows::Finish { scale: Scale::new(-sources.exponent), moments: &moments, rest: (rest / share) as f32 };
+        let finish = rows::Finish {
+            scale: Scale::new(-sources.exponent),
+            moments: &moments,
+            rest: self.own_light().of_computed() as f32,
+        };
         let (mut plane, mut finished) = (vec![0.0; width * height], vec![Finished::default(); height]);
         let groups = plane.par_chunks_mut(width * GROUP).zip(finished.par_chunks_mut(GROUP));
         groups.enumerate().for_each_init(
@@ -125,18 +131,32 @@ impl Planar {
         (plane, finished)
     }
 
-    /// What may remain of a pixel's own light in its veil, over that light; and the share of the veil that it may make, of the
-    /// computed veil, which may contain as much of it again.
-    fn own_light(&self) -> (f64, f64) {
+    fn own_light(&self) -> OwnLight {
         let own = &self.layers.own;
         let rest = own.spread + own.largest * self.roundings * <f32 as Real>::UNIT;
-        (rest, OWN_SHARE * self.tolerance / (1.0 + OWN_SHARE * self.tolerance))
+        OwnLight { rest, share: OWN_SHARE * self.tolerance / (1.0 + OWN_SHARE * self.tolerance) }
     }
 
     /// How many pixels are below the floor.
     fn dark(&self, rows: &[Finished], floor: f64, plane: &[f32]) -> usize {
         let some = plane.chunks_exact(self.size[0]).zip(rows).filter(|(_, finished)| f64::from(finished.least) < floor);
         some.map(|(row, _)| row.iter().filter(|value| f64::from(**value) < floor).count()).sum()
+    }
+}
+
+/// What becomes of a pixel's own light.
+#[derive(Debug, Clone, Copy)]
+struct OwnLight {
+    /// What may remain of it in the pixel's veil, over that light.
+    rest: f64,
+    /// The share of the veil that it may make, of the computed veil, which may contain as much of it again.
+    share: f64,
+}
+
+impl OwnLight {
+    /// The rest over its share of what was computed: where light times this is more than that, the pixel is lonely.
+    fn of_computed(self) -> f64 {
+        self.rest / self.share
     }
 }
 

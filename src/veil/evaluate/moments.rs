@@ -48,6 +48,14 @@ impl Moments {
         (self.quadratic == 0.0).then_some((self.constant * self.sums[0]) as f32)
     }
 
+    /// What they add to a pixel, by its place (u, v) from the middle: a constant, and what is times u, v and u² + v².
+    pub fn polynomial(&self) -> [f64; 4] {
+        let [light, across, down, square] = self.sums;
+        let quadratic = self.quadratic;
+        let constant = self.constant * light + quadratic * square;
+        [constant, -2.0 * quadratic * across, -2.0 * quadratic * down, quadratic * light]
+    }
+
     /// What they add to a pixel.
     pub fn at(&self, x: usize, y: usize) -> f64 {
         let [u, v] = [x as f64 - self.middle[0], y as f64 - self.middle[1]];

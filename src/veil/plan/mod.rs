@@ -23,8 +23,8 @@ mod spherical;
 use std::sync::Arc;
 
 pub(super) use lattice::{Lattice, kernel, weights};
-pub(super) use near::Near;
-pub(super) use own::{Own, PERIOD};
+pub(crate) use near::Near;
+pub(crate) use own::{Own, PERIOD};
 pub(super) use spherical::{Road, Spherical};
 
 use super::error::Error;
@@ -47,7 +47,7 @@ pub(super) const OWN_SHARE: f64 = 0.05;
 
 /// A Gaussian that has found its place.
 #[derive(Debug, Clone)]
-pub(super) struct Placed {
+pub(crate) struct Placed {
     /// Its value at 0, the pixel's weight included.
     pub weight: f64,
     /// Pixels from a point of its lattice to the next; 1 where it is a kernel on the pixels.
@@ -58,7 +58,7 @@ pub(super) struct Placed {
 
 /// What is summed.
 #[derive(Debug, Clone)]
-pub(super) struct Layers {
+pub(crate) struct Layers {
     /// Separable kernels on the pixels.
     pub direct: Vec<Placed>,
     /// Those of each lattice, from pitch 2 on.

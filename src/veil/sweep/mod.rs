@@ -19,7 +19,7 @@ use super::simd::{Into, Plane, Real};
 pub(super) const GROUP: usize = 48;
 
 /// From a lattice to the next, by splines of pitch 1 and 2: which taps, and how many points before the first are read.
-pub(super) struct Step {
+pub(crate) struct Step {
     /// Up: moments against the wide spline from those against the narrow one.
     pub up: &'static [f64],
     /// Points before the first that its first value reads.
@@ -31,7 +31,7 @@ pub(super) struct Step {
 }
 
 /// From pixels to lattice 1: the spline at its halves.
-pub(super) const FIRST: Step = Step {
+pub(crate) const FIRST: Step = Step {
     up: &[1.0 / 48.0, 8.0 / 48.0, 23.0 / 48.0, 32.0 / 48.0, 23.0 / 48.0, 8.0 / 48.0, 1.0 / 48.0],
     before: 5,
     even: &[1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0],
@@ -39,11 +39,11 @@ pub(super) const FIRST: Step = Step {
 };
 
 /// From a lattice to the next: β(x / 2) = Σ [1, 4, 6, 4, 1] / 8 β(x − j).
-pub(super) const NEXT: Step =
+pub(crate) const NEXT: Step =
     Step { up: &[0.125, 0.5, 0.75, 0.5, 0.125], before: 3, even: &[0.5, 0.5], odd: &[0.125, 0.75, 0.125] };
 
 /// How many points each lattice has along a side of `pixels`, from lattice 1 on.
-pub(super) fn points(pixels: usize, lattices: usize) -> Vec<usize> {
+pub(crate) fn points(pixels: usize, lattices: usize) -> Vec<usize> {
     let mut points = Vec::with_capacity(lattices);
     let mut inner = pixels;
     for _ in 0..lattices {
