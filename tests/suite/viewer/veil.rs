@@ -23,6 +23,10 @@ fn cie(age: f64) -> Parameters {
     Parameters { age: Some(age), ..Parameters::new(Name::Cie) }
 }
 
+fn gaussian(width: f64) -> Parameters {
+    Parameters { width: Some(width), scatter: Some(0.4), ..Parameters::new(Name::Gaussian) }
+}
+
 /// A look with a veil by these parameters, and a picture of 50°.
 fn with_veil(parameters: Parameters) -> Look {
     let veil = Veil::new(&section(parameters), false).unwrap();
@@ -179,20 +183,19 @@ fn strength_scatter_age_and_pigment_cost_a_composite_and_no_veil() {
 #[test]
 fn a_drag_of_what_has_to_be_summed_ends_with_the_veil_that_is_set() {
     let (_folder, mut session) = in_a_folder();
-    session.take(with_veil(cie(25.0)));
-    for fov in [49.0, 45.0, 40.0, 30.0, 20.0, 10.0] {
-        session.app.document_mut().unwrap().look.fov = Some(fov);
+    session.take(with_veil(gaussian(0.5)));
+    for width in [0.4, 0.3, 0.2, 0.1, 0.05, 0.02] {
+        session.app.document_mut().unwrap().look = with_veil(gaussian(width));
         session.frame(Vec::new());
     }
     session.rest();
     let dragged = session.screen.read();
     assert!(session.veils() <= 7, "no more than there were changes");
-    session.app.document_mut().unwrap().look.fov = Some(30.0);
+    session.app.document_mut().unwrap().look = with_veil(gaussian(0.3));
     session.rest();
     assert!(session.screen.read() != dragged);
-    session.app.document_mut().unwrap().look.fov = Some(10.0);
+    session.app.document_mut().unwrap().look = with_veil(gaussian(0.02));
     session.rest();
-    // The button of undo is the same, too.
     assert!(session.screen.read() == dragged);
 }
 
@@ -257,9 +260,9 @@ fn a_lens_by_hand_keeps_the_veil() {
 #[test]
 fn another_photo_has_a_veil_of_its_own() {
     let (_folder, mut session) = in_a_folder();
-    session.take(with_veil(cie(25.0)));
+    session.take(with_veil(gaussian(0.2)));
     let other = Photo::new(120, 80, lamp().pixels.into_iter().rev().collect());
-    session.app.add(Document::new(Path::new("other.exr"), other, with_veil(cie(25.0))));
+    session.app.add(Document::new(Path::new("other.exr"), other, with_veil(gaussian(0.2))));
     session.rest();
     let shown = session.screen.read();
     // Back and forth: nothing of one lies over the other.
