@@ -32,6 +32,8 @@ pub struct Veiling {
     refused: Option<(VeilSums, String)>,
     /// Why the last look that was asked for contradicts itself or the photo, if it does.
     wrong: Option<String>,
+    /// Whether the device has layers.
+    laid_over: bool,
     /// How many were summed.
     count: u64,
     /// How long the last one took, in milliseconds.
@@ -110,6 +112,7 @@ impl Veiling {
             known: None,
             refused: None,
             wrong: None,
+            laid_over: false,
             count: 0,
             milliseconds: 0.0,
         }
@@ -200,11 +203,20 @@ impl Veiling {
     /// [`Error::Gl`] where the driver refuses. Where it has no room, that is what [`Veiling::problem`] says.
     pub fn load(&mut self, picture: &mut Picture, document: &Document, alone: bool) -> Result<bool> {
         let alone = alone || self.asked.as_ref().is_some_and(|asked| asked.adds);
-        let Some(known) = self.known.as_mut().filter(|known| known.loaded != Some(alone)) else { return Ok(false) };
+        let Some(known) = &mut self.known else {
+            // Layers of nothing keep no room.
+            if std::mem::take(&mut self.laid_over) {
+                picture.lay_over(&[])?;
+            }
+            return Ok(false);
+        };
+        if known.loaded == Some(alone) {
+            return Ok(false);
+        }
         let laid = known.laid.take().filter(|laid| laid.alone == alone);
         let laid = laid.unwrap_or_else(|| Laid::new(&known.layers, document.pixels(), alone));
         match picture.lay_over(&laid.layers) {
-            Ok(()) => known.loaded = Some(alone),
+            Ok(()) => (known.loaded, self.laid_over) = (Some(alone), true),
             Err(error @ Error::Gl(_)) => return Err(error),
             Err(error) => self.refused = self.known.take().map(|known| (known.sums, error.to_string())),
         }

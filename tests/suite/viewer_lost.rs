@@ -3,8 +3,10 @@
 use std::path::Path;
 
 use vglare::gpu::{Backend, Device};
-use vglare::look::Look;
+use vglare::look::{Look, Veil};
 use vglare::photo::Photo;
+use vglare::psf::{Name, Parameters};
+use vglare::scene::VeilSection;
 use vglare::viewer::model::State;
 use vglare::viewer::replay::{Place, Player, Step};
 use vglare::viewer::{Document, Status};
@@ -57,6 +59,29 @@ fn the_window_looks_the_same_on_the_next_device() {
         let differ = before.iter().zip(&after).filter(|(before, after)| before != after).count();
         assert_eq!(differ, 0, "{backend}");
     }
+}
+
+#[test]
+fn the_veil_lies_over_the_picture_on_the_next_device() {
+    let _turn = turn();
+    let (_folder, mut player) = opened(Backend::ALL[0]);
+    let parameters = Parameters { width: Some(0.2), scatter: Some(0.3), ..Parameters::new(Name::Gaussian) };
+    let section = VeilSection { parameters, fov: None, projection: None, border: None, tolerance: None };
+    let veil = Some(Veil::new(&section, false).unwrap());
+    // The study of the field is drawn in panels, and comes when it comes.
+    let canvas = |player: &mut Player| {
+        let [width, _] = player.screen().size();
+        let pixels = player.screen().read().into_iter().enumerate();
+        pixels.filter(|(at, _)| (at % width as usize) < 500 && (at / width as usize) < 500).collect::<Vec<_>>()
+    };
+    let without = canvas(&mut player);
+    player.app().document_mut().unwrap().look.veil = veil;
+    player.step(&Step::Rest).unwrap();
+    let with = canvas(&mut player);
+    assert!(with != without);
+    player.step(&Step::Lose).unwrap();
+    player.step(&Step::Rest).unwrap();
+    assert_eq!((canvas(&mut player) == with, status(&mut player).counts.veils), (true, 1));
 }
 
 /// Until what is found out in the background has been shown.

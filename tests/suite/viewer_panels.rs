@@ -9,12 +9,13 @@ use std::time::{Duration, Instant};
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, RawInput, Rect, Theme, pos2, vec2};
 use glam::DVec2;
 use image::RgbImage;
-use vglare::choices::Evaluator;
+use vglare::choices::{Evaluator, Projection};
 use vglare::gpu::{Backend, Device, Screen};
-use vglare::look::Look;
+use vglare::look::{Look, Veil};
 use vglare::photo::Photo;
+use vglare::psf::{Name, Parameters};
 use vglare::reference;
-use vglare::scene::Goal;
+use vglare::scene::{Goal, VeilSection};
 use vglare::viewer::{App, Cut, Document, Plot, Told};
 
 use crate::support::{Turn, turn};
@@ -49,7 +50,8 @@ impl Session {
         let mut session = Self::of_size(SIZE);
         session.app.context().set_theme(theme);
         session.settle();
-        for (title, is_open) in [("Look", true), ("View", true), ("Lights", true), ("Accuracy", true), ("Plots", false)]
+        for (title, is_open) in
+            [("Look", true), ("Veil", true), ("View", true), ("Lights", true), ("Accuracy", true), ("Plots", false)]
         {
             if (title == open) != is_open {
                 session.click(title);
@@ -134,6 +136,14 @@ fn lamp() -> Photo {
         [light, light, light * 0.8, 1.0]
     };
     Photo::new(120, 80, (0..80).flat_map(|j| (0..120).map(move |i| pixel(i, j))).collect())
+}
+
+/// A look with the veil of an eye, on a plane, which is planned quickly, in a picture of 50°.
+fn veiled() -> Look {
+    let parameters = Parameters::new(Name::Cie);
+    let projection = Some(Projection::Planar);
+    let section = VeilSection { parameters, fov: None, projection, border: None, tolerance: None };
+    Look { veil: Some(Veil::new(&section, false).unwrap()), fov: Some(50.0), ..Look::default() }
 }
 
 fn certified(app: &App) -> bool {
@@ -286,6 +296,10 @@ fn panel(title: &str, plot: Plot, theme: Theme) -> RgbImage {
             session.click(fold);
         }
     }
+    if title == "Veil" {
+        session.document().look = veiled();
+        session.wait(|app| !app.is_veiling());
+    }
     // Not by what this machine was found to be fast at, and with a spectrum to be shown.
     session.document().look.accuracy.evaluator = Some(Evaluator::Rows);
     session.plot(plot);
@@ -303,6 +317,7 @@ fn panels_look_as_they_did() {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden-ui");
     let panels = [
         ("look", "Look", Plot::Off),
+        ("veil", "Veil", Plot::Off),
         ("view", "View", Plot::Off),
         ("lights", "Lights", Plot::Off),
         ("accuracy", "Accuracy", Plot::Off),

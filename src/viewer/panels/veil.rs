@@ -12,6 +12,7 @@ use crate::viewer::control::{Number, brief, choice, flag, hint};
 use crate::viewer::document::Document;
 use crate::viewer::model::Look;
 use crate::viewer::stage::Stage;
+use crate::viewer::veiling::Figures;
 
 const SCATTER: Number = Number {
     name: "Scatter",
@@ -50,9 +51,6 @@ pub fn show(ui: &mut Ui, document: &mut Document, stage: &Stage) {
     let fault = document.veil_fault.as_deref().or_else(|| stage.veiling().wrong());
     if let Some(fault) = fault {
         ui.label(RichText::new(in_words(fault)).color(ui.visuals().error_fg_color));
-    }
-    if stage.veiling().is_summing() {
-        hint(ui, "Computing the veil…");
     }
     figures(ui, &document.look, stage);
 }
@@ -154,12 +152,17 @@ fn figures(ui: &mut Ui, look: &Look, stage: &Stage) {
             "The function at its centre, where the strength is 1",
             format!("{} {per}", of_three(veil.psf().centres())),
         );
-        let Some(known) = &known else { return };
-        let before = if known.is_current { "" } else { ", as it was before" };
-        let error = format!("{:.1e} of {:.1e}{before}", known.layers.predicted, known.layers.asked);
+        // In its row, so that nothing below moves while something is dragged.
+        let error = match &known {
+            Some(Figures { layers, is_current: true, .. }) => {
+                format!("{:.1e} of {:.1e}", layers.predicted, layers.asked)
+            }
+            _ if stage.veiling().is_summing() => "computing…".into(),
+            _ => "–".into(),
+        };
         row("predicted error", "At most, relative to the veil at each pixel; and what it is held to", error);
-        row("Gaussians", "Of the mixture that stands for the function", known.layers.terms.to_string());
-        row("computed in", "In the background, planning included", format!("{:.0} ms", stage.veiling().effort().1));
+        let Some(known) = &known else { return };
+        row("Gaussians", "Of the mixtures that stand for the function", known.layers.terms.to_string());
     });
     let Some(known) = known else { return };
     ledger(ui, &known.ledger);

@@ -1,10 +1,10 @@
 //! What every control of the panels has: what it says of itself, a way back, and keys.
 
-use vglare::choices::{Border, LengthUnit, Mix, Normalize, Projection};
-use vglare::look::{Accuracy, Veil};
+use vglare::choices::{Border, LengthUnit, Mix, Normalize};
+use vglare::look::Accuracy;
 use vglare::photo::ToneMap;
-use vglare::psf::{Luminance, Name, Parameters};
-use vglare::scene::{FindOptions, Ghost, VeilSection};
+use vglare::psf::Luminance;
+use vglare::scene::{FindOptions, Ghost};
 use vglare::series::Bell;
 use vglare::viewer::{KEYS, Shows, Viewing};
 
@@ -271,7 +271,7 @@ fn a_name_goes_back_by_the_keyboard_too() {
 }
 
 /// A look with a veil of these parameters, of a picture of 50°.
-fn veiled(parameters: Parameters) -> Look {
+fn veiled_by(parameters: Parameters) -> Look {
     let section = VeilSection { parameters, fov: None, projection: None, border: None, tolerance: None };
     Look { veil: Some(Veil::new(&section, false).unwrap()), fov: Some(50.0), ..Look::default() }
 }
@@ -302,7 +302,7 @@ fn every_control_of_a_veil_goes_back() {
     ];
     let mut session = Session::of_size([480, 2600]);
     for (opened, set, names) in cases {
-        let opened = veiled(opened);
+        let opened = veiled_by(opened);
         session.app.add(Document::new(Path::new("lamp.exr"), lamp(), opened.clone()));
         session.settle();
         let document = session.document();
@@ -311,7 +311,7 @@ fn every_control_of_a_veil_goes_back() {
             projection: (!planar).then_some(Projection::Fisheye),
             border: planar.then_some(Border::Mirror),
             tolerance: Some(0.02),
-            ..veiled(set).veil.unwrap().section()
+            ..veiled_by(set).veil.unwrap().section()
         };
         document.look.veil = Some(Veil::new(&section, true).unwrap());
         (document.look.fov, document.look.unit) = (Some(40.0), LengthUnit::Diagonal);
@@ -336,7 +336,7 @@ fn every_control_of_a_veil_goes_back() {
 #[test]
 fn a_veils_control_sets_what_it_says() {
     let mut session = Session::of_size([480, 2600]);
-    session.app.add(Document::new(Path::new("lamp.exr"), lamp(), veiled(Parameters::new(Name::Cie))));
+    session.app.add(Document::new(Path::new("lamp.exr"), lamp(), veiled()));
     session.settle();
     session.wait(|app| !app.is_veiling());
     let veils = session.app.counts().veils;
@@ -352,9 +352,9 @@ fn a_veils_control_sets_what_it_says() {
     // Even in the logarithm, between 1e-4 and 1.
     assert!(scatter.is_some_and(|scatter| (scatter / 0.01).ln().abs() < 0.3), "{scatter:?}");
     let field = session.app.controls().into_iter().find(|told| told.name == "Field").unwrap();
-    session.click_at(pos2(field.label.right() + 14.0, field.part.center().y));
+    session.click_at(pos2(field.part.left() - 20.0, field.part.center().y));
     assert_eq!(session.document().look.fov, None);
     assert!(session.app.problem().is_some_and(|said| said.contains("field of view")));
-    session.click_at(pos2(field.label.right() + 14.0, field.part.center().y));
+    session.click_at(pos2(field.part.left() - 20.0, field.part.center().y));
     assert_eq!((session.document().look.fov, session.app.problem()), (Some(50.0), None));
 }
