@@ -36,6 +36,9 @@ use summing::{Summed, computed, summed};
 #[cfg(feature = "laboratory")]
 pub(crate) use trials::{Trial, trials};
 
+/// Half a unit in the last place of an f32.
+const HALF_A_UNIT: f64 = 0.5 * f32::EPSILON as f64;
+
 /// A veil that is ready to be laid over its photo.
 pub(super) struct Cast {
     /// s V, planes of rows.
@@ -104,10 +107,12 @@ pub(super) fn cast(
     let filled = seat.filled(pixels);
     let sources = veil::Photo::rgba(filled.as_flattened(), seat.size).map_err(failed)?;
     let Summed { veil: computed, by, note } = stages.time("veil", || summed(&channels, &sources, asked, computer))?;
+    // Of a transform the plan knows no more than what it is held to.
+    let certified = computed.certified.into_iter().fold(0.0, f64::max);
     let measured = stages.time("veil certify", || {
         let mut pixels = looked_at(seat.stored, brightest(&stored), verify);
         pixels.iter_mut().for_each(|pixel| *pixel = seat.seen(*pixel));
-        measured(&channels, &sources, &seat.geometry, wanted.border, &computed, &pixels, asked)
+        measured(&channels, &sources, &seat.geometry, wanted.border, &computed, &pixels, certified)
             .map(|error| (error, pixels.len()))
     })?;
     let mut computed = seat.cropped(computed);
@@ -115,9 +120,9 @@ pub(super) fn cast(
     let loses = Loss::new(wanted, seat, strength);
     let scale = strength as f32;
     computed.planes.par_iter_mut().for_each(|plane| plane.iter_mut().for_each(|value| *value *= scale));
-    let veil::Veil { planes, bad, dark, certified, .. } = computed;
-    // Of a transform the plan knows no more than what it is held to.
-    let predicted = certified.into_iter().fold(0.0, f64::max);
+    let veil::Veil { planes, bad, dark, .. } = computed;
+    // The product is rounded.
+    let predicted = certified + if strength == 1.0 { 0.0 } else { HALF_A_UNIT };
     let veiled = Veiled {
         parameters: wanted.section().parameters,
         projection: wanted.projection(),

@@ -59,12 +59,13 @@ pub(crate) fn trials(
     let mut pixels = looked_at(seat.stored, brightest(&stored), Verify::Sample);
     pixels.iter_mut().for_each(|pixel| *pixel = seat.seen(*pixel));
     let mut trial = |plan: Prepared| {
-        let Prepared { channels, asked, .. } = plan;
+        let Prepared { channels, .. } = plan;
         let veil = computed(&channels, &sources)?;
+        let bound = predicted(&channels).bound;
         Ok(Trial {
             terms: terms(&channels),
-            predicted: predicted(&channels).bound,
-            measured: measured(&channels, &sources, &seat.geometry, wanted.border, &veil, &pixels, asked)?,
+            predicted: bound,
+            measured: measured(&channels, &sources, &seat.geometry, wanted.border, &veil, &pixels, bound)?,
             times: times.next().unwrap_or_default().into_iter().collect(),
         })
     };
