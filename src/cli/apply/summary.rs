@@ -9,7 +9,7 @@ use crate::certificate::Verify;
 use crate::choices::{LengthUnit, Processor};
 use crate::cli::found;
 use crate::cli::plan::text;
-use crate::job::{Computed, Done, Veiled};
+use crate::job::{Computed, Done, VeilSeen, Veiled};
 use crate::look::{Gathered, Look, LookLights};
 use crate::photo::Facts;
 use crate::scene::Found;
@@ -128,7 +128,8 @@ fn about_found(out: &mut dyn Write, found: &Found, look: &Look) -> io::Result<()
 
 /// What every pixel scattered, how exactly, and what became of the light.
 fn about_veil(out: &mut dyn Write, veiled: &Veiled) -> io::Result<()> {
-    let Veiled { parameters, projection, fov, fov_from, strength, scattered, terms, error, ledger, dark, .. } = veiled;
+    let Veiled { seen, strength, scattered, terms, error, ledger, dark, .. } = veiled;
+    let VeilSeen { parameters, projection, fov, fov_from, border: _ } = seen;
     write!(out, "veil     {}", parameters.psf)?;
     if let Some((fov, from)) = fov.zip(fov_from.as_ref()) {
         write!(out, ", {from}: {} across a {} picture", text::angle(fov), said(projection))?;

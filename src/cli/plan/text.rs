@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::job::{Planning, VeilPlanned};
+use crate::job::{Planning, VeilPlanned, VeilSeen};
 use crate::plan::{Cost, Evaluator, Gathering, Group, Plan, Source, Transform};
 use crate::series::moments::Cells;
 
@@ -34,7 +34,8 @@ pub fn plan(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
 
 /// What is planned of a veil, in three lines.
 pub fn veil(out: &mut dyn Write, veil: &VeilPlanned) -> io::Result<()> {
-    let VeilPlanned { parameters, projection, fov, fov_from, scattered, terms, asked, predicted, rounding, .. } = veil;
+    let VeilPlanned { seen, scattered, terms, asked, predicted, rounding, .. } = veil;
+    let VeilSeen { parameters, projection, fov, fov_from, border: _ } = seen;
     write!(out, "veil     {}", parameters.psf)?;
     if let Some((fov, from)) = fov.zip(fov_from.as_ref()) {
         write!(out, ", {from}: {} across", angle(fov))?;

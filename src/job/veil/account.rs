@@ -3,27 +3,18 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::{Seat, light};
-use crate::choices::{Border, Processor, Projection};
+use super::{Seat, VeilSeen, light};
+use crate::choices::Processor;
 use crate::look::Veil as Wanted;
-use crate::psf::Parameters;
 use crate::veil::{self, BadSources};
 use crate::{Error, Result};
 
 /// How a veil was computed, and how exactly.
 #[derive(Debug, Clone, Serialize)]
 pub struct Veiled {
-    /// The function, and what it was given.
+    /// What it is of.
     #[serde(flatten)]
-    pub parameters: Parameters,
-    /// How the picture was taken to be formed, degrees across its width, and what lies beyond it.
-    pub projection: Projection,
-    /// See `projection`; none where the function is not in degrees.
-    pub fov: Option<f64>,
-    /// What that follows from, in words.
-    pub fov_from: Option<String>,
-    /// See `projection`.
-    pub border: Border,
+    pub seen: VeilSeen,
     /// s: what the veil was multiplied by.
     pub strength: f64,
     /// f: the share of the light that is scattered where the strength is 1, RGB.

@@ -27,7 +27,7 @@ pub use account::{Ledger, NoSources, VeilError, Veiled};
 use account::{Loss, ledger, no_sources};
 pub use layers::{MOST_LAYERS, VeilLayers, VeilSums};
 use measure::{brightest, looked_at, measured};
-pub use planned::VeilPlanned;
+pub use planned::{VeilPlanned, VeilSeen};
 #[cfg(feature = "laboratory")]
 pub(crate) use planning::plan_of;
 use planning::{Channel, Definition, Held};
@@ -124,11 +124,7 @@ pub(super) fn cast(
     // The product is rounded.
     let predicted = certified + if strength == 1.0 { 0.0 } else { HALF_A_UNIT };
     let veiled = Veiled {
-        parameters: wanted.section().parameters,
-        projection: wanted.projection(),
-        fov: view.as_ref().map(|view| view.across(frame, wanted.projection())),
-        fov_from: view.map(|view| view.from),
-        border: wanted.border,
+        seen: VeilSeen::new(wanted, frame, view),
         strength,
         scattered: wanted.psf().energies(),
         centre: wanted.psf().centres(),

@@ -1,4 +1,4 @@
-//! What is told of a veil that is only planned.
+//! What is told of a veil that is only planned, and of any.
 
 use serde::Serialize;
 
@@ -6,12 +6,13 @@ use super::{Prepared, predicted, raised, terms};
 use crate::choices::{Border, Projection};
 use crate::frame::Frame;
 use crate::look::{Look, Veil as Wanted};
+use crate::photo::View;
 use crate::psf::Parameters;
 use crate::veil::Predicted;
 
-/// How a veil would be computed, and how exactly.
+/// What is scattered in a picture, and how that is taken to be formed.
 #[derive(Debug, Clone, Serialize)]
-pub struct VeilPlanned {
+pub struct VeilSeen {
     /// The function, and what it was given.
     #[serde(flatten)]
     pub parameters: Parameters,
@@ -23,6 +24,14 @@ pub struct VeilPlanned {
     pub fov_from: Option<String>,
     /// What lies beyond its edges.
     pub border: Border,
+}
+
+/// How a veil would be computed, and how exactly.
+#[derive(Debug, Clone, Serialize)]
+pub struct VeilPlanned {
+    /// What it is of.
+    #[serde(flatten)]
+    pub seen: VeilSeen,
     /// The share of the light that is scattered, by strength and function, RGB.
     pub scattered: [f64; 3],
     /// Gaussians of the mixture.
@@ -47,16 +56,24 @@ pub struct VeilPlanned {
     pub notes: Vec<String>,
 }
 
-impl VeilPlanned {
-    pub(super) fn new(look: &Look, wanted: &Wanted, frame: &Frame, prepared: Prepared) -> Self {
-        let Prepared { view, channels, asked, .. } = prepared;
-        let Predicted { bound, rounding, operations, direct, lattices, dropped, reach } = predicted(&channels);
+impl VeilSeen {
+    pub(super) fn new(wanted: &Wanted, frame: &Frame, view: Option<View>) -> Self {
         Self {
             parameters: wanted.section().parameters,
             projection: wanted.projection(),
             fov: view.as_ref().map(|view| view.across(frame, wanted.projection())),
             fov_from: view.map(|view| view.from),
             border: wanted.border,
+        }
+    }
+}
+
+impl VeilPlanned {
+    pub(super) fn new(look: &Look, wanted: &Wanted, frame: &Frame, prepared: Prepared) -> Self {
+        let Prepared { view, channels, asked, .. } = prepared;
+        let Predicted { bound, rounding, operations, direct, lattices, dropped, reach } = predicted(&channels);
+        Self {
+            seen: VeilSeen::new(wanted, frame, view),
             scattered: wanted.psf().energies().map(|energy| look.strength * energy),
             terms: terms(&channels),
             asked,
