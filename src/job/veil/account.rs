@@ -120,6 +120,14 @@ impl Loss {
     }
 }
 
+impl Loss {
+    /// What the pixel in the middle of the picture loses, RGB.
+    pub fn in_the_middle(&self) -> [f64; 3] {
+        let [width, height] = self.size;
+        self.at(height / 2 * width + width / 2).1
+    }
+}
+
 /// Adds up where the light is.
 pub(super) fn ledger(sources: &veil::Photo<'_>, planes: &[Vec<f32>; 3], loses: &Loss) -> Ledger {
     let [width, height] = sources.size();
