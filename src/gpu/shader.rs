@@ -94,9 +94,9 @@ const SOURCES: &[(&str, &str)] = &sources![
     "spectrum_sum.comp",
     "strips.frag",
     "strips_double.comp",
-    "veil/along.frag",
-    "veil/down.frag",
-    "veil/pixels.frag",
+    "veil/convolve.frag",
+    "veil/expand.frag",
+    "veil/finish.frag",
     "view.frag",
 ];
 

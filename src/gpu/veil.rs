@@ -36,7 +36,7 @@ impl Axis {
 
 /// Taps along an axis.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Along<'a> {
+pub(crate) struct Convolve<'a> {
     pub axis: Axis,
     pub taps: &'a [f64],
     /// The texel of the source that the target's first meets with the first tap; negative before the source's first.
@@ -49,7 +49,7 @@ pub(crate) struct Along<'a> {
 
 /// From a lattice to the finer one, along an axis.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Down<'a> {
+pub(crate) struct Expand<'a> {
     pub axis: Axis,
     /// What points with an even and with an odd number take from the coarse lattice, from half their number on.
     pub even: &'a [f64],
@@ -60,7 +60,7 @@ pub(crate) struct Down<'a> {
 
 /// What is done at the pixels.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Pixels<'a> {
+pub(crate) struct Finish<'a> {
     /// The texel of the sources that is the picture's first pixel.
     pub first: [i32; 2],
     /// Where moments are counted from, in texels of the sources.
@@ -73,10 +73,10 @@ pub(crate) struct Pixels<'a> {
     pub near: &'a [Vec<f64>],
 }
 
-/// As in `veil/along.frag`.
+/// As in `veil/convolve.frag`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub(super) struct AlongUniforms {
+pub(super) struct ConvolveUniforms {
     pub first: i32,
     pub stride: i32,
     pub count: i32,
@@ -84,23 +84,23 @@ pub(super) struct AlongUniforms {
     pub aside: i32,
     pub pad: [i32; 3],
 }
-const _: () = assert!(size_of::<AlongUniforms>() == 32);
+const _: () = assert!(size_of::<ConvolveUniforms>() == 32);
 
-/// As in `veil/down.frag`.
+/// As in `veil/expand.frag`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub(super) struct DownUniforms {
+pub(super) struct ExpandUniforms {
     pub first: i32,
     pub even: i32,
     pub odd: i32,
     pub end: i32,
 }
-const _: () = assert!(size_of::<DownUniforms>() == 16);
+const _: () = assert!(size_of::<ExpandUniforms>() == 16);
 
-/// As in `veil/pixels.frag`.
+/// As in `veil/finish.frag`.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[repr(C)]
-pub(super) struct PixelsUniforms {
+pub(super) struct FinishUniforms {
     pub first: [i32; 2],
     pub size: [i32; 2],
     pub middle: [f32; 2],
@@ -112,13 +112,13 @@ pub(super) struct PixelsUniforms {
     pub square: [f32; 4],
     pub fours: [[i32; 4]; NEAR_ROWS],
 }
-const _: () = assert!(size_of::<PixelsUniforms>() == 96 + 16 * NEAR_ROWS);
+const _: () = assert!(size_of::<FinishUniforms>() == 96 + 16 * NEAR_ROWS);
 
 /// Sums veils, three channels at a time.
 pub(crate) struct VeilPass {
-    along: Buffer<AlongUniforms>,
-    down: Buffer<DownUniforms>,
-    pixels: Buffer<PixelsUniforms>,
+    convolve: Buffer<ConvolveUniforms>,
+    expand: Buffer<ExpandUniforms>,
+    finish: Buffer<FinishUniforms>,
     taps: Buffer<[f32; 4]>,
 }
 
@@ -126,9 +126,9 @@ impl VeilPass {
     pub fn new(runner: &Runner) -> Result<Self> {
         let device = runner.device();
         Ok(Self {
-            along: Buffer::new(device, 1)?,
-            down: Buffer::new(device, 1)?,
-            pixels: Buffer::new(device, 1)?,
+            convolve: Buffer::new(device, 1)?,
+            expand: Buffer::new(device, 1)?,
+            finish: Buffer::new(device, 1)?,
             taps: Buffer::new(device, MOST_TAPS)?,
         })
     }
@@ -137,58 +137,65 @@ impl VeilPass {
     ///
     /// # Errors
     /// [`Error::Gl`] for more than [`MOST_TAPS`], or where the driver refuses.
-    pub fn along(
+    pub fn convolve(
         &mut self,
         runner: &Runner,
-        along: Along<'_>,
+        convolve: Convolve<'_>,
         source: &Texture,
         before: Option<&Texture>,
         target: &Texture,
     ) -> Result<()> {
-        let Along { axis, taps, first, stride, aside } = along;
+        let Convolve { axis, taps, first, stride, aside } = convolve;
         self.set_taps(taps.iter().map(|tap| [*tap as f32, 0.0, 0.0, 0.0]))?;
         let (count, end) = (taps.len() as i32, axis.length(source));
-        self.along.store(&[AlongUniforms { first, stride, count, end, aside, pad: [0; 3] }])?;
-        self.along.bind_uniform(PASS);
+        self.convolve.store(&[ConvolveUniforms { first, stride, count, end, aside, pad: [0; 3] }])?;
+        self.convolve.bind_uniform(PASS);
         source.bind(PHOTO);
         let added = added(before);
-        runner.draw("veil/along.frag", &defines([axis.define(), added]), target, 0)
+        runner.draw("veil/convolve.frag", &defines([axis.define(), added]), target, 0)
     }
 
     /// What a coarse lattice holds, on the next finer one, along an axis.
     ///
     /// # Errors
-    /// As [`VeilPass::along`].
-    pub fn down(&mut self, runner: &Runner, down: Down<'_>, source: &Texture, target: &Texture) -> Result<()> {
-        let Down { axis, even, odd, first } = down;
+    /// As [`VeilPass::convolve`].
+    pub fn expand(&mut self, runner: &Runner, expand: Expand<'_>, source: &Texture, target: &Texture) -> Result<()> {
+        let Expand { axis, even, odd, first } = expand;
         self.set_taps(even.iter().chain(odd).map(|tap| [*tap as f32, 0.0, 0.0, 0.0]))?;
         let [even, odd] = [even, odd].map(|taps| taps.len() as i32);
-        self.down.store(&[DownUniforms { first, even, odd, end: axis.length(source) }])?;
-        self.down.bind_uniform(PASS);
+        self.expand.store(&[ExpandUniforms { first, even, odd, end: axis.length(source) }])?;
+        self.expand.bind_uniform(PASS);
         source.bind(PHOTO);
-        runner.draw("veil/down.frag", &defines([axis.define(), None]), target, 0)
+        runner.draw("veil/expand.frag", &defines([axis.define(), None]), target, 0)
     }
 
     /// The veil at the pixels, from what was summed `before`.
     ///
     /// # Errors
-    /// As [`VeilPass::along`].
-    pub fn pixels(
+    /// As [`VeilPass::convolve`].
+    pub fn finish(
         &mut self,
         runner: &Runner,
-        pixels: &Pixels<'_>,
+        finish: &Finish<'_>,
         sources: &Texture,
         before: Option<&Texture>,
         target: &Texture,
     ) -> Result<()> {
-        let own = pixels.own.iter().flat_map(|row| row.as_chunks().0).map(|four: &[f64; 4]| four.map(|tap| tap as f32));
-        let near = pixels.near.iter().enumerate().flat_map(|(y, row)| fours(row, y));
+        let own = finish.own.iter().flat_map(|row| row.as_chunks().0).map(|four: &[f64; 4]| four.map(|tap| tap as f32));
+        if finish.near.len() > 4 * NEAR_ROWS {
+            return Err(Error::Gl(format!(
+                "a small kernel of {} rows is beyond the {} of a pass",
+                finish.near.len(),
+                4 * NEAR_ROWS
+            )));
+        }
+        let near = finish.near.iter().enumerate().flat_map(|(y, row)| fours(row, y));
         self.set_taps(own.chain(near))?;
-        self.pixels.store(&[PixelsUniforms::new(pixels, sources)])?;
-        self.pixels.bind_uniform(PASS);
+        self.finish.store(&[FinishUniforms::new(finish, sources)])?;
+        self.finish.bind_uniform(PASS);
         sources.bind(PHOTO);
         let added = added(before);
-        runner.draw("veil/pixels.frag", &defines([None, added]), target, 0)
+        runner.draw("veil/finish.frag", &defines([None, added]), target, 0)
     }
 
     fn set_taps(&mut self, taps: impl Iterator<Item = [f32; 4]>) -> Result<()> {
@@ -202,21 +209,21 @@ impl VeilPass {
     }
 }
 
-impl PixelsUniforms {
-    fn new(pixels: &Pixels<'_>, sources: &Texture) -> Self {
+impl FinishUniforms {
+    fn new(finish: &Finish<'_>, sources: &Texture) -> Self {
         let colours = |index: usize| {
-            let [red, green, blue] = pixels.moments.map(|moments| moments[index]);
+            let [red, green, blue] = finish.moments.map(|moments| moments[index]);
             [red, green, blue, 0.0]
         };
         let mut rows = [[0; 4]; NEAR_ROWS];
-        for (count, row) in rows.as_flattened_mut().iter_mut().zip(pixels.near) {
+        for (count, row) in rows.as_flattened_mut().iter_mut().zip(finish.near) {
             *count = row.len().div_ceil(4) as i32;
         }
         Self {
-            first: pixels.first,
+            first: finish.first,
             size: [sources.level_width(0) as i32, sources.level_height(0) as i32],
-            middle: pixels.middle,
-            rows: pixels.near.len() as i32,
+            middle: finish.middle,
+            rows: finish.near.len() as i32,
             pad: 0,
             constant: colours(0),
             across: colours(1),

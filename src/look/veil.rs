@@ -119,7 +119,7 @@ impl Veil {
     }
 
     /// Where the pixels of a picture lie for this function, whose lengths are in the frame's unit; `view` says how the picture was
-    /// seen, for one in degrees.
+    /// seen, for one in degrees: along the middle of all of it, whatever is stored.
     ///
     /// # Errors
     /// A [`psf::Fault`]: where the function is in degrees and there is no view, where it is not and the picture is to be a
@@ -127,7 +127,13 @@ impl Veil {
     pub fn geometry(&self, frame: &Frame, view: Option<&View>) -> Result<Geometry, psf::Fault> {
         let fault = |key, reason: String| Err(psf::Fault::new(key, reason));
         if frame.pixel_aspect != 1.0 {
-            return fault("psf", "a veil needs square pixels, and this picture has none".into());
+            let aspect = frame.pixel_aspect;
+            return fault(
+                "psf",
+                format!(
+                    "a veil needs square pixels, and this picture's are {aspect} times as wide as high: resample it first"
+                ),
+            );
         }
         let (name, projection) = (self.psf().name(), self.projection());
         match self.psf().unit() {
@@ -151,13 +157,6 @@ impl Veil {
                     return fault(
                         "border",
                         "nothing is known of the sphere beyond a picture: only a plane has a border".into(),
-                    );
-                }
-                // A window that lies elsewhere than in the middle of its picture would be seen from elsewhere.
-                if projection != Projection::Planar && !frame.is_whole() {
-                    return fault(
-                        "projection",
-                        "a picture of which another part is stored than all has a planar veil only".into(),
                     );
                 }
                 Ok(match projection {

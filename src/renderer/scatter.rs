@@ -5,7 +5,7 @@ use std::rc::Rc;
 use crate::gpu::Device;
 use crate::gpu::resource::{Scratch, Texel, Texture};
 use crate::gpu::runner::Runner;
-use crate::gpu::veil::{Along, Axis, Down, MOST_TAPS, PERIOD, Pixels, VeilPass};
+use crate::gpu::veil::{Axis, Convolve, Expand, Finish, MOST_TAPS, PERIOD, VeilPass};
 use crate::veil::sweep::{FIRST, NEXT, Step, points};
 use crate::veil::{self, Layers, Lights, OnDevice, Photo, Placed, Plan, Veil};
 use crate::{Error, Result};
@@ -123,11 +123,11 @@ impl Scatter {
                 None => (current(&self.sources)?, &FIRST),
             };
             let [width, height] = [columns[level] as u32, rows[level] as u32];
-            let along = |axis| Along { axis, taps: step.up, first: -(step.before as i32), stride: 2, aside: 0 };
+            let up = |axis| Convolve { axis, taps: step.up, first: -(step.before as i32), stride: 2, aside: 0 };
             let strips = strips.get(self.runner.device(), Texel::Rgba, width, source.level_height(0))?;
-            self.pass.along(&self.runner, along(Axis::X), source, None, strips)?;
+            self.pass.convolve(&self.runner, up(Axis::X), source, None, strips)?;
             let moments = moments.get(self.runner.device(), Texel::Rgba, width, height)?;
-            self.pass.along(&self.runner, along(Axis::Y), strips, None, moments)?;
+            self.pass.convolve(&self.runner, up(Axis::Y), strips, None, moments)?;
         }
         Ok(())
     }
@@ -153,9 +153,9 @@ impl Scatter {
         self.pixels.sum(&self.runner, &mut self.pass, sources, coarse, &onto)?;
         let before = if self.pixels.any { self.pixels.last.current() } else { None };
         let veil = self.veil.get(self.runner.device(), Texel::Rgba, size[0], size[1])?;
-        let pixels =
-            Pixels { first, middle: lights.middle(), moments: lights.moments, own: &own.table, near: &near.rows };
-        self.pass.pixels(&self.runner, &pixels, sources, before, veil)?;
+        let finish =
+            Finish { first, middle: lights.middle(), moments: lights.moments, own: &own.table, near: &near.rows };
+        self.pass.finish(&self.runner, &finish, sources, before, veil)?;
         Ok(veil)
     }
 }
@@ -174,11 +174,11 @@ impl Sums {
         let device = runner.device();
         self.any = false;
         if let Some(coarse) = coarse {
-            let down = |axis, first| Down { axis, even: step.even, odd: step.odd, first };
+            let onto_finer = |axis, first| Expand { axis, even: step.even, odd: step.odd, first };
             let spread = self.spread.get(device, Texel::Rgba, width, coarse.level_height(0))?;
-            pass.down(runner, down(Axis::X, first[0]), coarse, spread)?;
+            pass.expand(runner, onto_finer(Axis::X, first[0]), coarse, spread)?;
             let sums = self.last.get(device, Texel::Rgba, width, height)?;
-            pass.down(runner, down(Axis::Y, first[1]), spread, sums)?;
+            pass.expand(runner, onto_finer(Axis::Y, first[1]), spread, sums)?;
             self.any = true;
         }
         for placed in terms {
@@ -190,13 +190,13 @@ impl Sums {
             let top = (first[1] - radius).max(0);
             let bottom = (first[1] + height as i32 + radius).min(source.level_height(0) as i32);
             let across = self.across.get(device, Texel::Rgba, width, (bottom - top) as u32)?;
-            let rows = Along { axis: Axis::X, taps: &weighted, first: first[0] - radius, stride: 1, aside: top };
-            pass.along(runner, rows, source, None, across)?;
+            let rows = Convolve { axis: Axis::X, taps: &weighted, first: first[0] - radius, stride: 1, aside: top };
+            pass.convolve(runner, rows, source, None, across)?;
             std::mem::swap(&mut self.last, &mut self.before);
             let before = if self.any { self.before.current() } else { None };
             let sums = self.last.get(device, Texel::Rgba, width, height)?;
-            let columns = Along { axis: Axis::Y, taps: &whole, first: first[1] - radius - top, stride: 1, aside: 0 };
-            pass.along(runner, columns, across, before, sums)?;
+            let columns = Convolve { axis: Axis::Y, taps: &whole, first: first[1] - radius - top, stride: 1, aside: 0 };
+            pass.convolve(runner, columns, across, before, sums)?;
             self.any = true;
         }
         Ok(())

@@ -6,7 +6,7 @@ use super::job::Job;
 use super::report::kind_name;
 use crate::Result;
 use crate::certificate::Verify;
-use crate::choices::LengthUnit;
+use crate::choices::{LengthUnit, Processor};
 use crate::cli::found;
 use crate::cli::plan::text;
 use crate::job::{Computed, Done, Veiled};
@@ -134,7 +134,9 @@ fn about_veil(out: &mut dyn Write, veiled: &Veiled) -> io::Result<()> {
         write!(out, ", {from}: {} across a {} picture", text::angle(fov), said(projection))?;
     }
     let mean = |values: [f64; 3]| values.into_iter().sum::<f64>() / 3.0;
-    writeln!(out, ": scatters {:.1} % of the light, by {terms} Gaussians", 100.0 * strength * mean(*scattered))?;
+    write!(out, ": scatters {:.1} % of the light, by {terms} Gaussians", 100.0 * strength * mean(*scattered))?;
+    // The CPU is what one expects.
+    writeln!(out, "{}", if veiled.computed_by == Processor::Gl { ", on the device" } else { "" })?;
     let share = |part: [f64; 3]| 100.0 * mean(part) / mean(ledger.light);
     if mean(ledger.light) > 0.0 {
         let [kept, inside, lost] = [ledger.kept, ledger.inside, ledger.lost].map(share);

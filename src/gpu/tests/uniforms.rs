@@ -13,7 +13,7 @@ use crate::gpu::lines::Uniforms as Line;
 use crate::gpu::mask::Mask;
 use crate::gpu::range::Step;
 use crate::gpu::shrink::Axis;
-use crate::gpu::veil::{AlongUniforms, DownUniforms, NEAR_ROWS, PixelsUniforms};
+use crate::gpu::veil::{ConvolveUniforms, ExpandUniforms, FinishUniforms, NEAR_ROWS};
 use crate::gpu::view::View as Seen;
 
 /// A field's name, and the numbers of the words that it was given.
@@ -212,19 +212,19 @@ fn shaders_read_the_uniforms_of_the_direct_sum_as_they_are_written() {
 
 #[test]
 fn shaders_read_the_uniforms_of_veils_as_they_are_written() {
-    let along = AlongUniforms { first: 1, stride: 2, count: 3, end: 4, aside: 5, pad: [0; 3] };
+    let convolve = ConvolveUniforms { first: 1, stride: 2, count: 3, end: 4, aside: 5, pad: [0; 3] };
     let names = ["first", "stride", "count", "end", "aside"];
     let given: Vec<Given> = (1..).zip(names).map(|(number, name)| (name, number..=number)).collect();
-    held(&["veil/along.frag"], BLOCK, along, &given);
+    held(&["veil/convolve.frag"], BLOCK, convolve, &given);
 
-    let down = DownUniforms { first: 1, even: 2, odd: 3, end: 4 };
+    let expand = ExpandUniforms { first: 1, even: 2, odd: 3, end: 4 };
     let given: Vec<Given> =
         (1..).zip(["first", "even", "odd", "end"]).map(|(number, name)| (name, number..=number)).collect();
-    held(&["veil/down.frag"], BLOCK, down, &given);
+    held(&["veil/expand.frag"], BLOCK, expand, &given);
 
     let mut fours = [[0; 4]; NEAR_ROWS];
     fours.as_flattened_mut().iter_mut().zip(24..).for_each(|(four, number)| *four = number);
-    let pixels = PixelsUniforms {
+    let finish = FinishUniforms {
         first: [1, 2],
         size: [3, 4],
         middle: [5.0, 6.0],
@@ -247,5 +247,5 @@ fn shaders_read_the_uniforms_of_veils_as_they_are_written() {
         ("square", 20..=23),
         ("fours", 24..=23 + 4 * NEAR_ROWS as u8),
     ];
-    held(&["veil/pixels.frag"], BLOCK, pixels, &given);
+    held(&["veil/finish.frag"], BLOCK, finish, &given);
 }

@@ -3,11 +3,11 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::light;
+use super::{Seat, light};
 use crate::choices::{Border, Processor, Projection};
 use crate::look::Veil as Wanted;
 use crate::psf::Parameters;
-use crate::veil::{self, BadSources, Geometry};
+use crate::veil::{self, BadSources};
 use crate::{Error, Result};
 
 /// How a veil was computed, and how exactly.
@@ -101,29 +101,27 @@ pub struct NoSources {
 pub(super) struct Loss {
     /// s f and s k(0), RGB.
     shares: [[f64; 3]; 2],
-    geometry: Geometry,
-    size: [usize; 2],
+    seat: Seat,
 }
 
 impl Loss {
-    pub fn new(veil: &Wanted, geometry: Geometry, size: [usize; 2], strength: f64) -> Self {
+    pub fn new(veil: &Wanted, seat: Seat, strength: f64) -> Self {
         let strength = if veil.adds { 0.0 } else { strength };
         let shares = [veil.psf().energies(), veil.psf().centres()].map(|shares| shares.map(|share| strength * share));
-        Self { shares, geometry, size }
+        Self { shares, seat }
     }
 
     /// The solid angle, or the area, of a pixel, and what it loses, RGB.
     pub fn at(&self, pixel: usize) -> (f64, [f64; 3]) {
-        let area = self.geometry.solid_angle(self.size, [pixel % self.size[0], pixel / self.size[0]]);
+        let columns = self.seat.stored[0];
+        let area = self.seat.solid_angle([pixel % columns, pixel / columns]);
         let [energies, centres] = self.shares;
         (area, [0, 1, 2].map(|channel| energies[channel] - centres[channel] * area))
     }
-}
 
-impl Loss {
-    /// What the pixel in the middle of the picture loses, RGB.
+    /// What the pixel in the middle of those that are stored loses, RGB.
     pub fn in_the_middle(&self) -> [f64; 3] {
-        let [width, height] = self.size;
+        let [width, height] = self.seat.stored;
         self.at(height / 2 * width + width / 2).1
     }
 }

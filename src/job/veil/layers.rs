@@ -3,14 +3,14 @@
 use rayon::prelude::*;
 
 use super::account::Loss;
-use super::planning::{Held, Pixels};
-use super::{Ledger, check, coarse, computed, failed, ledger, light, on_pixels, raised, size, terms, weighed};
+use super::planning::Held;
+use super::{Ledger, Seat, check, coarse, computed, failed, ledger, light, raised, seated, terms, weighed};
 use crate::Result;
 use crate::frame::Frame;
 use crate::look::{Look, Veil as Wanted};
 use crate::photo::Photo;
 use crate::scene::Emission;
-use crate::veil::{self, Geometry};
+use crate::veil;
 
 /// The most layers that a veil has.
 pub const MOST_LAYERS: usize = 4;
@@ -22,8 +22,7 @@ pub const MOST_LAYERS: usize = 4;
 pub struct VeilSums {
     /// The veils whose weighted sum it is, each of a function that scatters all of the light.
     parts: Vec<Wanted>,
-    geometry: Geometry,
-    size: [usize; 2],
+    seat: Seat,
     held: Held,
 }
 
@@ -57,9 +56,9 @@ impl VeilSums {
     pub fn of(look: &Look, photo: &Photo, frame: &Frame) -> Result<Option<(Self, Vec<[f64; 3]>)>> {
         let Some(wanted) = look.veil.as_ref().filter(|_| look.strength != 0.0) else { return Ok(None) };
         check(look, wanted)?;
-        let (_, geometry) = on_pixels(look, wanted, photo, frame)?;
+        let (_, seat) = seated(look, wanted, photo, frame)?;
         let (parts, weights) = wanted.parts(MOST_LAYERS);
-        let sums = Self { parts, geometry, size: size(frame), held: Held::new(look, wanted) };
+        let sums = Self { parts, seat, held: Held::new(look, wanted) };
         Ok(Some((sums, weights)))
     }
 
@@ -72,15 +71,16 @@ impl VeilSums {
     /// If there are not as many pixels as the frame had.
     pub fn compute(&self, emission: Emission, pixels: &[[f32; 4]]) -> Result<VeilLayers> {
         let weighed = weighed(emission, pixels);
-        let sources =
-            veil::Photo::rgba(weighed.as_deref().unwrap_or(pixels).as_flattened(), self.size).map_err(failed)?;
+        let (pixels, seat) = (weighed.as_deref().unwrap_or(pixels), self.seat);
+        let stored = veil::Photo::rgba(pixels.as_flattened(), seat.stored).map_err(failed)?;
+        let filled = seat.filled(pixels);
+        let sources = veil::Photo::rgba(filled.as_flattened(), seat.size).map_err(failed)?;
         let mut all = VeilLayers { layers: Vec::new(), asked: self.held.asked, predicted: 0.0, terms: 0, raised: None };
         for part in &self.parts {
-            let pixels = Pixels { geometry: &self.geometry, size: self.size, border: part.border };
-            let (channels, asked) = self.held.channels(part.psf(), pixels)?;
-            let veil::Veil { planes, certified, .. } = computed(&channels, &sources)?;
-            let loses = Loss::new(&part.clone().adding(false), self.geometry, self.size, 1.0);
-            let ledger = ledger(&sources, &planes, &loses);
+            let (channels, asked) = self.held.channels(part.psf(), seat.pixels(part.border))?;
+            let veil::Veil { planes, certified, .. } = seat.cropped(computed(&channels, &sources)?);
+            let loses = Loss::new(&part.clone().adding(false), seat, 1.0);
+            let ledger = ledger(&stored, &planes, &loses);
             all.layers.push(Layer { planes, loses, ledger });
             all.asked = all.asked.max(asked);
             all.predicted = certified.into_iter().fold(all.predicted, f64::max);
@@ -226,6 +226,56 @@ mod tests {
             }
             assert_eq!(layers.notes(&weights, look.veil.as_ref().unwrap().adds), cast.veiled.notes);
             assert!(layers.predicted > 0.0 && layers.predicted <= TOLERANCE, "{:e}", layers.predicted);
+        }
+    }
+
+    /// CIE 146's equation over a rectilinear picture 40 degrees wide, at a pixel.
+    fn by_hand(photo: &Photo, age: f64, pigment: f64, at: usize) -> [f64; 3] {
+        let [width, height] = [photo.width(), photo.height()].map(|side| side as usize);
+        let focal = 0.5 * width as f64 / 20f64.to_radians().tan();
+        let direction = |at: usize| {
+            let [x, y] =
+                [(at % width, width), (at / width, height)].map(|(at, side)| at as f64 - 0.5 * (side as f64 - 1.0));
+            let z = 1.0 / (1.0 + (x * x + y * y) / (focal * focal)).sqrt();
+            ([x * z / focal, y * z / focal, z], z * z * z / (focal * focal))
+        };
+        let aged = 1.0 + (age / 62.5f64).powi(4);
+        let (target, _) = direction(at);
+        let mut sum = [0.0; 3];
+        for (index, pixel) in photo.pixels.iter().enumerate().filter(|(index, _)| *index != at) {
+            let (source, solid_angle) = direction(index);
+            let chord = (0..3).map(|side| (source[side] - target[side]).powi(2)).sum::<f64>().sqrt();
+            let theta = (2.0 * (0.5 * chord).asin()).to_degrees();
+            let k = 10.0 / theta.powi(3) + (5.0 / theta.powi(2) + 0.1 * pigment / theta) * aged + 0.0025 * pigment;
+            (0..3).for_each(|channel| sum[channel] += f64::from(pixel[channel]) * solid_angle * k);
+        }
+        sum
+    }
+
+    /// The sums of one observer, laid together by the weights of others, are these observers' veils within the bound.
+    #[test]
+    fn weights_alone_make_the_veil_of_any_age_and_pigment() {
+        let pixel = |at: usize| if at == 300 { [2e4, 1e3, 10.0, 1.0] } else { [1e-3 * (at * 79 % 101) as f32; 4] };
+        let photo = Photo::new(33, 21, (0..33 * 21).map(pixel).collect());
+        let of = |age, pigment| {
+            let seen_by = Parameters { age: Some(age), pigment: Some(pigment), ..Parameters::new(Name::Cie) };
+            let look = look(seen_by, None, 1.0, false);
+            VeilSums::of(&look, &photo, &look.frame(&photo).unwrap()).unwrap().unwrap()
+        };
+        let (sums, _) = of(20.0, 0.5);
+        let layers = sums.compute(Emission::of(&photo), &photo.pixels).unwrap();
+        let veils: Vec<_> = (0..layers.count()).map(|layer| layers.alone(layer)).collect();
+        for (age, pigment) in [(20.0, 0.5), (60.0, 0.0), (90.0, 1.2)] {
+            let (same, weights) = of(age, pigment);
+            assert!(same == sums && veils.len() == 4);
+            for at in (0..33 * 21).step_by(17) {
+                for (channel, known) in by_hand(&photo, age, pigment, at).into_iter().enumerate() {
+                    let terms = veils.iter().zip(&weights);
+                    let sum: f64 = terms.map(|(veil, weight)| f64::from(veil[at][channel]) * weight[channel]).sum();
+                    let off = (sum / known - 1.0).abs();
+                    assert!(off <= layers.predicted, "age {age}, pigment {pigment}, pixel {at}: {off:.1e}");
+                }
+            }
         }
     }
 

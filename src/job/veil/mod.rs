@@ -5,6 +5,7 @@ mod layers;
 mod measure;
 mod planned;
 mod planning;
+mod seat;
 mod summing;
 #[cfg(feature = "laboratory")]
 mod trials;
@@ -19,7 +20,7 @@ use crate::look::{Look, Veil as Wanted};
 use crate::photo::{Photo, View};
 use crate::psf::Fault;
 use crate::scene::Emission;
-use crate::veil::{self, Geometry, Predicted};
+use crate::veil::{self, Predicted};
 use crate::{Error, Result};
 
 pub use account::{Ledger, NoSources, VeilError, Veiled};
@@ -29,7 +30,8 @@ use measure::{brightest, looked_at, measured};
 pub use planned::VeilPlanned;
 #[cfg(feature = "laboratory")]
 pub(crate) use planning::plan_of;
-use planning::{Channel, Definition, Held, Pixels};
+use planning::{Channel, Definition, Held};
+use seat::Seat;
 use summing::{Summed, computed, summed};
 #[cfg(feature = "laboratory")]
 pub(crate) use trials::{Trial, trials};
@@ -45,8 +47,7 @@ pub(super) struct Cast {
 /// What is known of a veil before anything is summed.
 pub(super) struct Prepared {
     view: Option<View>,
-    geometry: Geometry,
-    size: [usize; 2],
+    seat: Seat,
     /// A plan and a kernel for all channels, or one for each.
     channels: Vec<Channel>,
     /// The tolerance that it is held to.
@@ -56,25 +57,19 @@ pub(super) struct Prepared {
 /// Plans the veil of a look for pixels of a frame, which is the photo's, or that of a photo made larger or smaller.
 fn prepared(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame, stages: &mut Stages) -> Result<Prepared> {
     check(look, wanted)?;
-    let (view, geometry) = on_pixels(look, wanted, photo, frame)?;
-    let size = size(frame);
-    let pixels = Pixels { geometry: &geometry, size, border: wanted.border };
-    let (channels, asked) = stages.time("veil plan", || Held::new(look, wanted).channels(wanted.psf(), pixels))?;
-    Ok(Prepared { view, geometry, size, channels, asked })
+    let (view, seat) = seated(look, wanted, photo, frame)?;
+    let held = Held::new(look, wanted);
+    let (channels, asked) = stages.time("veil plan", || held.channels(wanted.psf(), seat.pixels(wanted.border)))?;
+    Ok(Prepared { view, seat, channels, asked })
 }
 
 /// How a photo was seen, where that matters, and where the pixels of a frame lie for a veil.
-fn on_pixels(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame) -> Result<(Option<View>, Geometry)> {
+fn seated(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame) -> Result<(Option<View>, Seat)> {
     let view = seen(look, wanted, photo)?.map(|view| view.resized(&photo.frame, frame));
     // A look that is made larger is so by its veil, too, where that is on the picture's plane.
     let enlarged = frame.in_units_of(frame.unit * look.size);
-    let geometry = wanted.geometry(&enlarged, view.as_ref()).map_err(told)?;
-    Ok((view, geometry))
-}
-
-/// Columns and rows of the pixels of a frame.
-fn size(frame: &Frame) -> [usize; 2] {
-    [frame.window.width as usize, frame.window.height as usize]
+    let seat = Seat::new(wanted, &enlarged, view.as_ref())?;
+    Ok((view, seat))
 }
 
 /// How the veil of a look would be computed on the pixels of a frame, which is the photo's, or that of a photo made larger or
@@ -102,19 +97,22 @@ pub(super) fn cast(
     stages: &mut Stages,
 ) -> Result<Option<Cast>> {
     let Some(wanted) = look.veil.as_ref().filter(|_| look.strength != 0.0) else { return Ok(None) };
-    let Prepared { view, geometry, size, channels, asked } = prepared(look, wanted, photo, frame, stages)?;
+    let Prepared { view, seat, channels, asked } = prepared(look, wanted, photo, frame, stages)?;
     let weighed = weighed(Emission::of(photo), &photo.pixels);
-    let sources = weighed.as_ref().unwrap_or(&photo.pixels);
-    let sources = veil::Photo::rgba(sources.as_flattened(), size).map_err(failed)?;
-    let Summed { veil: mut computed, by, note } =
-        stages.time("veil", || summed(&channels, &sources, asked, computer))?;
+    let pixels = weighed.as_ref().unwrap_or(&photo.pixels);
+    let stored = veil::Photo::rgba(pixels.as_flattened(), seat.stored).map_err(failed)?;
+    let filled = seat.filled(pixels);
+    let sources = veil::Photo::rgba(filled.as_flattened(), seat.size).map_err(failed)?;
+    let Summed { veil: computed, by, note } = stages.time("veil", || summed(&channels, &sources, asked, computer))?;
     let measured = stages.time("veil certify", || {
-        let pixels = looked_at(size, brightest(&sources), verify);
-        measured(&channels, &sources, &geometry, wanted.border, &computed, &pixels, asked)
+        let mut pixels = looked_at(seat.stored, brightest(&stored), verify);
+        pixels.iter_mut().for_each(|pixel| *pixel = seat.seen(*pixel));
+        measured(&channels, &sources, &seat.geometry, wanted.border, &computed, &pixels, asked)
             .map(|error| (error, pixels.len()))
     })?;
+    let mut computed = seat.cropped(computed);
     let strength = look.strength;
-    let loses = Loss::new(wanted, geometry, size, strength);
+    let loses = Loss::new(wanted, seat, strength);
     let scale = strength as f32;
     computed.planes.par_iter_mut().for_each(|plane| plane.iter_mut().for_each(|value| *value *= scale));
     let veil::Veil { planes, bad, dark, certified, .. } = computed;
@@ -133,7 +131,7 @@ pub(super) fn cast(
         computed_by: by,
         notes: raised(asked, wanted.tolerance()).into_iter().chain(coarse(loses.in_the_middle())).chain(note).collect(),
         error: VeilError { asked, predicted, measured: measured.0, pixels: measured.1 },
-        ledger: ledger(&sources, &planes, &loses),
+        ledger: ledger(&stored, &planes, &loses),
         dark,
         no_sources: no_sources(bad),
     };

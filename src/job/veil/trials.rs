@@ -42,23 +42,29 @@ pub(crate) fn trials(
         prepared(look, &held, photo, frame, &mut Stages::default())
     };
     let plans: Vec<Result<Prepared>> = tolerances.iter().map(plan).collect();
-    let size = [frame.window.width as usize, frame.window.height as usize];
-    let sources = veil::Photo::rgba(photo.pixels.as_flattened(), size).map_err(failed)?;
     let had: Vec<&Prepared> = plans.iter().flatten().collect();
+    // They lie alike, whatever the tolerance is.
+    let Some(seat) = had.first().map(|plan| plan.seat) else {
+        return Ok(plans.into_iter().map(|plan| plan.and_then(|_| Err(none()))).collect());
+    };
+    let stored = veil::Photo::rgba(photo.pixels.as_flattened(), seat.stored).map_err(failed)?;
+    let filled = seat.filled(&photo.pixels);
+    let sources = veil::Photo::rgba(filled.as_flattened(), seat.size).map_err(failed)?;
     let mut times = in_turns(rounds, had.len(), |index| {
         let started = Instant::now();
         computed(&had[index].channels, &sources)?;
         Ok(started.elapsed().as_secs_f64() * 1e3)
     })?
     .into_iter();
-    let pixels = looked_at(size, brightest(&sources), Verify::Sample);
+    let mut pixels = looked_at(seat.stored, brightest(&stored), Verify::Sample);
+    pixels.iter_mut().for_each(|pixel| *pixel = seat.seen(*pixel));
     let mut trial = |plan: Prepared| {
-        let Prepared { geometry, channels, asked, .. } = plan;
+        let Prepared { channels, asked, .. } = plan;
         let veil = computed(&channels, &sources)?;
         Ok(Trial {
             terms: terms(&channels),
             predicted: predicted(&channels).bound,
-            measured: measured(&channels, &sources, &geometry, wanted.border, &veil, &pixels, asked)?,
+            measured: measured(&channels, &sources, &seat.geometry, wanted.border, &veil, &pixels, asked)?,
             times: times.next().unwrap_or_default().into_iter().collect(),
         })
     };

@@ -86,6 +86,18 @@ fn what_was_kept_decides_for_its_renderer_and_version_only() {
         ["splat", "quad", "canvas"].map(|name| by_old["model"]["nanoseconds"][name].as_f64().expect("a number"));
     let built_in = CostModel::default();
     assert_eq!(of_local, [built_in.splat, built_in.quad, built_in.canvas].map(|value| 0.5 * value));
+    // So does one from before devices summed veils, which has nothing to say of the CPU.
+    let mut before = constants(|model| *model = CostModel::from_values(model.values().map(|value| 0.5 * value)));
+    for name in ["veil_add", "veil_tap", "veil_pixel"] {
+        before.as_object_mut().expect("an object").remove(name);
+    }
+    keep(&place, env!("CARGO_PKG_VERSION"), &before);
+    let by_old = place.vglare(&["plan", "in.exr", "--json"]).succeeded();
+    assert!(by_old.stderr().contains("before devices summed veils"), "{}", by_old.stderr());
+    let by_old: Value = serde_json::from_str(&by_old.stdout()).expect("JSON");
+    let of_veils = ["veil_add", "veil_tap", "veil_pixel"]
+        .map(|name| by_old["model"]["nanoseconds"][name].as_f64().expect("a number"));
+    assert_eq!(of_veils, [built_in.veil_add, 0.5 * built_in.veil_tap, 0.5 * built_in.veil_pixel]);
     keep(&place, "0.0.0", &cheap_bells);
     let other = plan(&[]);
     assert_eq!((&other["plan"]["evaluator"], &other["model"]["source"]), (&json!("grid"), &json!("built-in")));

@@ -1,8 +1,15 @@
 //! `apply --veil`: every pixel a source.
 
+use vglare::choices::Processor;
+use vglare::frame::{Frame, Window};
+use vglare::gpu::{Backend, Device};
+use vglare::job::{Computer, Found, Known, Stages, Unwatched, Wanted};
+use vglare::look::Look;
 use vglare::photo::{self, Photo};
+use vglare::scene::read_scene;
 
 use super::{Workplace, night};
+use crate::support::turn;
 
 const WIDTH: usize = 160;
 const HEIGHT: usize = 100;
@@ -277,4 +284,137 @@ fn what_no_gaussians_follow_is_transformed() {
         "[veil]\npsf = \"table\"\ntable = \"ring.csv\"\nprojection = \"rectilinear\"\nscatter = 0.3\n",
     );
     place.vglare(&["apply", "in.exr", "-o", "out.exr", "--scene", "fov.toml"]).failed(2, &["projection"]);
+}
+
+/// Where the rows of a table end, or a tail is told to, light ends: none lies beyond, and none that the energy does not count.
+#[test]
+fn a_function_ends_where_it_says() {
+    let place = Workplace::new();
+    place.write("in.exr", &point(80, 50, 1.0));
+    place.text("flat.csv", "0,1\n0.3,1\n0.3001,1\n");
+    let radius = 0.3001 / 0.02;
+    let line = "apply in.exr --glare veil.exr --lens none --scatter 0.5 --tolerance 1e-6 --strict --report report.json --force --veil";
+    for function in ["table --table flat.csv", "abg --abg 1,1e-18,0.5,0.3001"] {
+        place.vglare(&[words(line), words(function)].concat()).succeeded();
+        let veil = photo::read(&place.path("veil.exr")).unwrap();
+        for (at, pixel) in veil.pixels.iter().enumerate().filter(|(at, _)| *at != 50 * WIDTH + 80) {
+            let distance = ((at % WIDTH) as f64 - 80.0).hypot((at / WIDTH) as f64 - 50.0);
+            // Of unit energy: 1/πR², or 3/(4πR^1.5) r^−½.
+            let share = if function.starts_with("table") { 1.0 } else { 0.75 * (radius / distance).sqrt() };
+            let wanted = if distance > radius { 0.0 } else { 0.5 * share / (std::f64::consts::PI * radius * radius) };
+            let value = f64::from(pixel[0]);
+            assert!((value - wanted).abs() <= 2e-6 * wanted, "{function}, {distance} pixels off: {value:e} {wanted:e}");
+        }
+        let report = place.read_json("report.json");
+        let part = |name: &str| report["veil"]["ledger"][name][0].as_f64().unwrap();
+        // As far as so many pixels are a disc, but for the source's own, where the tail has its peak.
+        if function.starts_with("table") {
+            assert!(part("lost").abs() < 3e-3 * part("light"), "{report}");
+        }
+    }
+    place.vglare(&words("psf table --table flat.csv --plot psf.svg --csv psf.csv --range 0.01,3")).succeeded();
+    let text = std::fs::read_to_string(place.path("psf.csv")).unwrap();
+    let rows: Vec<Vec<f64>> = text
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect())
+        .collect();
+    let beyond = rows.iter().filter(|row| row[0] > 0.3001);
+    assert!(beyond.clone().count() > 100 && beyond.clone().all(|row| row[1] == 0.0 && (row[4] - 1.0).abs() < 1e-9));
+    // Nothing of it reaches another pixel.
+    place.text("dot.csv", "0,1\n0.001,1\n0.002,0.5\n");
+    place.vglare(&[words(line), words("table --table dot.csv")].concat()).succeeded();
+    let veil = photo::read(&place.path("veil.exr")).unwrap();
+    assert!(veil.pixels.iter().all(|pixel| pixel[..3] == [0.0; 3]));
+}
+
+/// A camera looks along the middle of its picture, and not of the pixels of it that are stored.
+#[test]
+fn stored_pixels_are_seen_where_they_lie() {
+    let place = Workplace::new();
+    let windows = [
+        Window { x: 100, y: 4, width: 50, height: 40 },
+        Window { x: -20, y: 30, width: 70, height: 45 },
+        Window { x: 0, y: 0, width: 160, height: 30 },
+    ];
+    for window in windows {
+        let frame = Frame::full(WIDTH as u32, HEIGHT as u32).with_window(window);
+        let columns = window.width as usize;
+        let (column, row) = (columns / 3, 7);
+        let mut pixels = vec![[0.0, 0.0, 0.0, 1.0]; window.pixels()];
+        pixels[row * columns + column] = [1e4, 5e3, 0.0, 1.0];
+        place.write("in.exr", &Photo { frame, ..Photo::new(window.width, window.height, pixels) });
+        let line = "apply in.exr -o out.exr --glare veil.exr --veil cie --lens none --fov 80 --tolerance 5e-3 --report report.json --force";
+        place.vglare(&words(line)).succeeded();
+        let veil = photo::read(&place.path("veil.exr")).unwrap();
+        assert_eq!(veil.frame.window, window);
+        let looks = |pixel: usize| {
+            let [x, y] = [window.x + (pixel % columns) as i32, window.y + (pixel / columns) as i32].map(f64::from);
+            let focal = 80.0 / 40f64.to_radians().tan();
+            let [u, v] = [(x - 79.5) / focal, (y - 49.5) / focal];
+            let z = 1.0 / (1.0 + u * u + v * v).sqrt();
+            ([u * z, v * z, z], z.powi(3) / (focal * focal))
+        };
+        let (source, area) = looks(row * columns + column);
+        for pixel in (0..window.pixels()).filter(|&pixel| pixel != row * columns + column) {
+            let (target, _) = looks(pixel);
+            let chord: f64 = (0..3).map(|k| (source[k] - target[k]).powi(2)).sum::<f64>().sqrt();
+            let wanted = 1e4 * area * cie((2.0 * (0.5 * chord).asin()).to_degrees());
+            let off = (f64::from(veil.pixels[pixel][0]) / wanted - 1.0).abs();
+            assert!(off < 5e-3, "{window:?}, pixel {pixel}: {off:e}");
+        }
+        // The lamp keeps what it does not scatter.
+        let [light, kept] =
+            ["light", "kept"].map(|name| place.read_json("report.json")["veil"]["ledger"][name][0].as_f64().unwrap());
+        let out = f64::from(photo::read(&place.path("out.exr")).unwrap().pixels[row * columns + column][0]);
+        assert!((light / (1e4 * area) - 1.0).abs() < 1e-9 && (kept / light / (out / 1e4) - 1.0).abs() < 1e-6);
+    }
+    let mut wide = Photo::new(4, 3, vec![[1.0; 4]; 12]);
+    wide.source.pixel_aspect = 2.0;
+    place.write("wide.exr", &wide);
+    for veil in ["cie --fov 50", "gaussian --width 0.1 --scatter 0.1", "cie --fov 50 --projection planar"] {
+        let line = [words("apply wide.exr -o no.exr --lens none --veil"), words(veil)].concat();
+        place.vglare(&line).failed(2, &["square pixels", "2 times as wide as high"]);
+    }
+}
+
+/// Who embeds the crate may say what sums veils; the report tells, and the veil is the same.
+#[test]
+fn a_device_sums_the_same_veil() {
+    let place = Workplace::new();
+    let photo = place.photo("in.exr");
+    let _turn = turn();
+    let device = Device::open(&Backend::ALL).unwrap_or_else(|error| panic!("this test needs GL: {error}"));
+    let software = device.info().software;
+    let mut computer = Computer::new(device, Known::default());
+    let looks = [
+        "preset = \"none\"\n[veil]\npsf = \"cie\"\nfov = 40\nprojection = \"planar\"\nborder = \"mirror\"\n",
+        "[veil]\npsf = \"mixture\"\nwidths = [0.2, 0.4]\nweights = [3, 1]\ntints = [[1, 0.5, 0], [0, 0.5, 1]]\nscatter = 0.1\n",
+    ];
+    for text in looks {
+        let look = Look::from_scene(read_scene(&place.text("look.toml", text)).unwrap()).unwrap();
+        let mut veil = |by| {
+            computer.sum_veils_by(by);
+            let found = Found::new(&look, photo::read(&photo).unwrap(), Stages::default()).unwrap();
+            let wanted = Wanted { glare: true, ..Wanted::default() };
+            let done = found.compute(Some(&mut computer), wanted, &Unwatched).unwrap();
+            done.check().unwrap();
+            (done.glare.unwrap().pixels, done.veiled.unwrap())
+        };
+        let [(by_cpu, cpu), (by_device, device)] = [Processor::Cpu, Processor::Gl].map(|by| veil(Some(by)));
+        assert_eq!([cpu.computed_by, device.computed_by], [Processor::Cpu, Processor::Gl]);
+        assert_eq!(serde_json::to_value(&device).unwrap()["computed_by"], "gl");
+        assert!(device.error.predicted >= cpu.error.predicted && device.error.predicted <= device.error.asked);
+        let mut alike = 0;
+        for (a, b) in by_cpu.as_flattened().iter().zip(by_device.as_flattened()) {
+            assert!((a - b).abs() <= 1e-4 * a.abs(), "{text}: {b:e} for {a:e}");
+            alike += usize::from(a == b);
+        }
+        // Alpha is.
+        assert!(alike < by_cpu.len() * 4, "two sums, and not one");
+        // Left to itself a software renderer is not taken.
+        if software {
+            assert_eq!(veil(None).1.computed_by, Processor::Cpu);
+        }
+    }
 }
