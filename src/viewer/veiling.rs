@@ -89,6 +89,8 @@ pub struct Figures<'a> {
     pub layers: &'a VeilLayers,
     /// Where the light is, by the strength and the scatter of now.
     pub ledger: Ledger,
+    /// What a person ought to know.
+    pub notes: Vec<String>,
     /// Whether they are of what is set, or of what was set before.
     pub is_current: bool,
 }
@@ -255,7 +257,8 @@ impl Veiling {
         let (asked, known) = (self.asked.as_ref()?, self.known.as_ref()?);
         let weights = self.weights();
         let ledger = known.layers.ledger(&weights, asked.adds);
-        Some(Figures { layers: &known.layers, ledger, is_current: asked.sums == known.sums })
+        let notes = known.layers.notes(&weights, asked.adds);
+        Some(Figures { layers: &known.layers, ledger, notes, is_current: asked.sums == known.sums })
     }
 
     /// How many were summed, and the milliseconds that the last one took.

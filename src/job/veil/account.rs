@@ -109,6 +109,12 @@ impl Loss {
         let [energies, centres] = self.shares;
         (area, [0, 1, 2].map(|channel| energies[channel] - centres[channel] * area))
     }
+
+    /// What the pixel in the middle of those that are stored loses, RGB.
+    pub fn in_the_middle(&self) -> [f64; 3] {
+        let [width, height] = self.seat.stored;
+        self.at(height / 2 * width + width / 2).1
+    }
 }
 
 /// Adds up where the light is.

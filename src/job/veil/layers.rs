@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::account::Loss;
 use super::planning::Held;
-use super::{Ledger, Seat, check, computed, failed, ledger, light, raised, seated, terms, weighed};
+use super::{Ledger, Seat, check, coarse, computed, failed, ledger, light, raised, seated, terms, weighed};
 use crate::Result;
 use crate::frame::Frame;
 use crate::look::{Look, Veil as Wanted};
@@ -35,8 +35,8 @@ pub struct VeilLayers {
     pub predicted: f64,
     /// Gaussians of the mixture.
     pub terms: usize,
-    /// What a person ought to know.
-    pub notes: Vec<String>,
+    /// That it is held to more than was asked, where it is.
+    raised: Option<String>,
 }
 
 /// One of them, where both its weight and the strength are 1.
@@ -75,8 +75,7 @@ impl VeilSums {
         let stored = veil::Photo::rgba(pixels.as_flattened(), seat.stored).map_err(failed)?;
         let filled = seat.filled(pixels);
         let sources = veil::Photo::rgba(filled.as_flattened(), seat.size).map_err(failed)?;
-        let mut all =
-            VeilLayers { layers: Vec::new(), asked: self.held.asked, predicted: 0.0, terms: 0, notes: Vec::new() };
+        let mut all = VeilLayers { layers: Vec::new(), asked: self.held.asked, predicted: 0.0, terms: 0, raised: None };
         for part in &self.parts {
             let (channels, asked) = self.held.channels(part.psf(), seat.pixels(part.border))?;
             let veil::Veil { planes, certified, .. } = seat.cropped(computed(&channels, &sources)?);
@@ -87,7 +86,7 @@ impl VeilSums {
             all.predicted = certified.into_iter().fold(all.predicted, f64::max);
             all.terms += terms(&channels);
         }
-        all.notes.extend(raised(all.asked, self.held.asked));
+        all.raised = raised(all.asked, self.held.asked);
         Ok(all)
     }
 }
@@ -115,6 +114,16 @@ impl VeilLayers {
             [red, green, blue, 0.0]
         };
         pixels.par_iter().enumerate().map(of).collect()
+    }
+
+    /// What a person ought to know, where the layers have these weights, RGB.
+    pub fn notes(&self, weights: &[[f64; 3]], adds: bool) -> Vec<String> {
+        let mut lost = [0.0; 3];
+        for (layer, weights) in self.layers.iter().zip(weights).filter(|_| !adds) {
+            let part = layer.loses.in_the_middle();
+            (0..3).for_each(|channel| lost[channel] += weights[channel] * part[channel]);
+        }
+        self.raised.iter().cloned().chain(coarse(lost)).collect()
     }
 
     /// Where the light is, where the layers have these weights, RGB, and whether the photo keeps its own.
@@ -179,6 +188,8 @@ mod tests {
             look(aged(75.0), Some(Projection::Planar), 0.7, false),
             look(Parameters { scatter: Some(0.2), ..aged(60.0) }, None, 3.0, true),
             look(tinted, None, 2.0, false),
+            // Of pixels that are coarser than its core, which is told.
+            Look { fov: Some(150.0), ..look(aged(25.0), Some(Projection::Planar), 1.0, false) },
         ] {
             let frame = look.frame(&photo).unwrap();
             let cast = cast(&look, &photo, &frame, Verify::Sample, None, &mut Stages::default()).unwrap().unwrap();
@@ -213,6 +224,7 @@ mod tests {
                     );
                 }
             }
+            assert_eq!(layers.notes(&weights, look.veil.as_ref().unwrap().adds), cast.veiled.notes);
             assert!(layers.predicted > 0.0 && layers.predicted <= TOLERANCE, "{:e}", layers.predicted);
         }
     }

@@ -130,7 +130,7 @@ pub(super) fn cast(
         centre: wanted.psf().centres(),
         terms: terms(&channels),
         computed_by: by,
-        notes: raised(asked, wanted.tolerance()).into_iter().chain(coarse(&loses, seat.stored)).chain(note).collect(),
+        notes: raised(asked, wanted.tolerance()).into_iter().chain(coarse(loses.in_the_middle())).chain(note).collect(),
         error: VeilError { asked, predicted, measured: measured.0, pixels: measured.1 },
         ledger: ledger(&stored, &planes, &loses),
         dark,
@@ -151,9 +151,9 @@ fn raised(tolerance: f64, asked: f64) -> Option<String> {
     })
 }
 
-/// Says so where a pixel's own share of what it scatters is more than all of that, and it gains light.
-fn coarse(loses: &Loss, [width, height]: [usize; 2]) -> Option<String> {
-    let (_, lost) = loses.at(height / 2 * width + width / 2);
+/// Says so where a pixel's own share of what it scatters is more than all of that, and it gains light; of what the one in the middle
+/// loses, RGB.
+fn coarse(lost: [f64; 3]) -> Option<String> {
     let most = lost.into_iter().fold(0.0, f64::min);
     (most < 0.0).then(|| {
         format!(

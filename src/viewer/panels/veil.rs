@@ -166,7 +166,7 @@ fn figures(ui: &mut Ui, look: &Look, stage: &Stage) {
     });
     let Some(known) = known else { return };
     ledger(ui, &known.ledger);
-    known.layers.notes.iter().for_each(|note| hint(ui, note.as_str()));
+    known.notes.into_iter().for_each(|note| hint(ui, note));
 }
 
 /// Where the light is.
