@@ -33,7 +33,7 @@ pub struct AccuracyArgs {
     #[arg(long, value_name = "N,M", value_parser = degree)]
     degree: Option<Degree>,
 
-    /// Period of the series in x and y, in half picture heights (or --unit) [default: planned]
+    /// Period of the series in x and y, in the look's unit (see --unit) [default: planned]
     #[arg(long, value_name = "X,Y", value_parser = period)]
     period: Option<DVec2>,
 

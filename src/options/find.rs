@@ -12,7 +12,7 @@ pub struct FindArgs {
     #[arg(long, value_name = "L", value_parser = not_negative)]
     threshold: Option<f64>,
 
-    /// Regions that are this close to a brighter one join it, in half picture heights (or --unit); 0 merges none
+    /// Regions that are this close to a brighter one join it, in the look's unit (see --unit); 0 merges none
     /// [default: 0.02]
     #[arg(long, value_name = "R", value_parser = not_negative)]
     merge: Option<f64>,

@@ -22,7 +22,7 @@ pub struct PsfArgs {
     #[arg(long, value_enum)]
     luminance: Option<Luminance>,
 
-    /// Of gaussian: the standard deviation, in the look's unit, half picture heights by default
+    /// Of gaussian: the standard deviation, in the look's unit
     #[arg(long, value_name = "W", value_parser = finite)]
     width: Option<f64>,
 

@@ -70,11 +70,12 @@ fn about_photo(out: &mut dyn Write, job: &Job<'_, Done<'_>>) -> io::Result<()> {
     Ok(())
 }
 
-/// What lengths are counted in, where that is not as by default.
+/// What lengths are counted in, where that is not half the picture's height.
 fn about_unit(out: &mut dyn Write, work: &Done<'_>) -> io::Result<()> {
     let (unit, pixels) = (work.look.unit, work.frame.pixel_size().recip());
     match unit {
         LengthUnit::Height => Ok(()),
+        LengthUnit::ShortSide if work.frame.unit == 1.0 => Ok(()),
         LengthUnit::Degrees => writeln!(out, "unit     degrees, of {pixels:.1} pixels in the middle of the picture"),
         _ => writeln!(out, "unit     half the picture's {}, {pixels:.1} pixels", unit.to_string().replace('-', " ")),
     }
