@@ -32,11 +32,11 @@ pub struct Args {
     psf: PsfArgs,
 
     /// The angles or radii [default: 0.1 to 100 degrees, from 0.01 for cie135 and spencer; 0.001 to 2 of the look's unit]
-    #[arg(long, value_name = "FROM,TO", value_parser = range)]
+    #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true, value_parser = range)]
     range: Option<Range>,
 
     /// How close the Gaussians are to come, relatively, from 1e-6 to 0.5
-    #[arg(long, value_name = "E", default_value_t = 1e-2, value_parser = positive)]
+    #[arg(long, value_name = "E", default_value_t = 1e-2, allow_negative_numbers = true, value_parser = positive)]
     tolerance: f64,
 
     /// Draw profile, error of the Gaussians, encircled energy and transform: .svg or .png
