@@ -151,7 +151,8 @@ fn lights_say_their_unit_and_are_taken_in_no_other() {
     };
     // Half the height is half as long again as half the shorter side.
     assert!((ratio("size") - 1.5).abs() < 1e-9 && (ratio("flux") - 2.25).abs() < 1e-9);
-    let line = ["apply", "in.exr", "--glare", "glare.exr", "--force", "--report", "report.json", "--lights", "lights.json"];
+    let line =
+        ["apply", "in.exr", "--glare", "glare.exr", "--force", "--report", "report.json", "--lights", "lights.json"];
     place.text("scene.toml", "[look]\nstrength = 1\n");
     for other in [["--unit", "height"], ["--scene", "scene.toml"]] {
         place.vglare(&[&line[..], &other].concat()).failed(1, &["lights.json", "short-side", "height"]);
