@@ -26,6 +26,7 @@ mod computer;
 mod done;
 mod excess;
 mod found;
+mod panorama;
 mod planned;
 mod planning;
 mod settings;

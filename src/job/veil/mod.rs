@@ -18,7 +18,7 @@ use crate::choices::Normalize;
 use crate::frame::Frame;
 use crate::look::{Look, Veil as Wanted};
 use crate::photo::{Photo, View};
-use crate::psf::Fault;
+use crate::psf::{Fault, Unit};
 use crate::scene::Emission;
 use crate::veil::{self, Predicted};
 use crate::{Error, Result};
@@ -128,9 +128,14 @@ pub(super) fn cast(
         strength,
         scattered: wanted.psf().energies(),
         centre: wanted.psf().centres(),
+        adds: wanted.adds,
         terms: terms(&channels),
+        summed_by: summed_by(&channels),
         computed_by: by,
-        notes: raised(asked, wanted.tolerance()).into_iter().chain(coarse(loses.in_the_middle())).chain(note).collect(),
+        notes: [raised(asked, wanted.tolerance()), without_size(look, wanted), coarse(loses.in_the_middle()), note]
+            .into_iter()
+            .flatten()
+            .collect(),
         error: VeilError { asked, predicted, measured: measured.0, pixels: measured.1 },
         ledger: ledger(&stored, &planes, &loses),
         dark,
@@ -149,6 +154,17 @@ fn raised(tolerance: f64, asked: f64) -> Option<String> {
     (tolerance > asked).then(|| {
         format!("the veil is held to {tolerance:.1e} of itself instead of {asked:.1e}: the lowest that can be had here")
     })
+}
+
+/// Says so where a size is asked for of a veil that has none.
+fn without_size(look: &Look, veil: &Wanted) -> Option<String> {
+    let why = match veil.psf().unit() {
+        Unit::Look => return None,
+        Unit::Degrees => "is in degrees",
+        Unit::Pixels => "is a picture, one pixel of it for one of the photo",
+    };
+    let (size, name) = (look.size, veil.psf().name());
+    (size != 1.0).then(|| format!("a size of {size} changes nothing of the veil, whose function, {name}, {why}"))
 }
 
 /// Says so where a pixel's own share of what it scatters is more than all of that, and it gains light; of what the one in the middle
@@ -189,6 +205,8 @@ fn told(fault: Fault) -> Error {
 fn failed(error: veil::Error) -> Error {
     match error {
         veil::Error::OutOfReach { asked, best, .. } => Error::ToleranceBelowFloor { asked, floor: best },
+        // A picture that there cannot be: no plan would do.
+        veil::Error::Geometry(reason) => Error::Usage(reason),
         error => Error::Plan(error.to_string()),
     }
 }
@@ -202,6 +220,14 @@ fn weighed(emission: Emission, pixels: &[[f32; 4]]) -> Option<Vec<[f32; 4]>> {
         };
         pixels.par_iter().map(share).collect()
     })
+}
+
+/// How the veil is summed, in a word for each way that a channel of it is.
+fn summed_by(channels: &[Channel]) -> String {
+    let mut ways: Vec<String> = channels.iter().map(|(plan, _)| plan.method().to_string()).collect();
+    ways.sort();
+    ways.dedup();
+    ways.join(" and ")
 }
 
 /// Gaussians of the mixture.
@@ -220,6 +246,12 @@ fn light(value: f32) -> f64 {
 }
 
 impl Cast {
+    /// Pixels at which it is no finite number.
+    pub fn not_finite(&self) -> usize {
+        let finite = |at: usize| self.planes.iter().all(|plane| plane[at].is_finite());
+        (0..self.planes[0].len()).into_par_iter().filter(|&at| !finite(at)).count()
+    }
+
     /// Adds the veil to glare.
     pub fn add_to(&self, glare: &mut [[f32; 4]]) {
         let planes = self.planes.each_ref();

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{Prepared, predicted, raised, terms};
+use super::{Prepared, predicted, raised, summed_by, terms, without_size};
 use crate::choices::{Border, Projection};
 use crate::frame::Frame;
 use crate::look::{Look, Veil as Wanted};
@@ -36,6 +36,8 @@ pub struct VeilPlanned {
     pub scattered: [f64; 3],
     /// Gaussians of the mixture.
     pub terms: usize,
+    /// How it is summed: by a `pyramid` of Gaussians, on the `sphere`, by a `transform`, or by a `sum` of every source at every pixel.
+    pub summed_by: String,
     /// The error relative to the local veil that it is held to.
     pub asked: f64,
     /// The bound of that error.
@@ -52,7 +54,7 @@ pub struct VeilPlanned {
     pub dropped: usize,
     /// How far that kernel reaches, in pixels.
     pub reach: f64,
-    /// What a person ought to know: of a tolerance that could not be had.
+    /// What a person ought to know: of a tolerance that could not be had, of a size that changes nothing.
     pub notes: Vec<String>,
 }
 
@@ -76,6 +78,7 @@ impl VeilPlanned {
             seen: VeilSeen::new(wanted, frame, view),
             scattered: wanted.psf().energies().map(|energy| look.strength * energy),
             terms: terms(&channels),
+            summed_by: summed_by(&channels),
             asked,
             predicted: bound,
             rounding,
@@ -84,7 +87,7 @@ impl VeilPlanned {
             lattices,
             dropped,
             reach,
-            notes: raised(asked, wanted.tolerance()).into_iter().collect(),
+            notes: raised(asked, wanted.tolerance()).into_iter().chain(without_size(look, wanted)).collect(),
         }
     }
 }
