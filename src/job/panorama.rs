@@ -55,7 +55,7 @@ mod tests {
     fn photo([width, height]: [usize; 2], light: impl Fn(f64, f64) -> f64) -> Photo {
         let turn =
             |at: usize| (((at % width) as f64 + 0.5) / width as f64, ((at / width) as f64 + 0.5) / height as f64);
-        let pixels = (0..width * height).map(|at| turn(at)).map(|(x, y)| light(x, y) as f32);
+        let pixels = (0..width * height).map(turn).map(|(x, y)| light(x, y) as f32);
         Photo::new(width as u32, height as u32, pixels.map(|value| [value, 0.8 * value, 0.5 * value, 1.0]).collect())
     }
 
