@@ -24,7 +24,7 @@ pub(super) struct Summed {
 /// The veil, each channel by its kernel, within a tolerance: by what the computer was told, or by what costs less.
 ///
 /// # Errors
-/// Those of [`Plan::evaluate`], and of [`crate::renderer::Scatter::evaluate`] where the device was asked for.
+/// Those of [`crate::veil::Plan::evaluate`], and of [`crate::renderer::Scatter::evaluate`] where the device was asked for.
 pub(super) fn summed(
     channels: &[Channel],
     sources: &Photo<'_>,
