@@ -90,12 +90,11 @@ pub enum Mix {
 }
 
 /// What a look's lengths are counted in: sizes, and positions from the picture's centre.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "terminal", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum LengthUnit {
     /// Half the picture's height
-    #[default]
     Height,
     /// Half its shorter side, which stays the same when it is turned by 90°
     ShortSide,
@@ -103,6 +102,11 @@ pub enum LengthUnit {
     Diagonal,
     /// Degrees, as they are in the picture's middle, by its field of view
     Degrees,
+}
+
+impl LengthUnit {
+    /// What a file with lengths in it means that names no unit: such files are older than the others.
+    pub const OF_FILES: Self = Self::Height;
 }
 
 impl std::fmt::Display for LengthUnit {

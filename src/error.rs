@@ -99,9 +99,29 @@ pub enum Error {
         measured: f64,
     },
 
+    /// The veil is further from the truth than was asked.
+    #[error("the veil is off by {measured:.1e} of its own brightness at a pixel, and {asked:.1e} was asked")]
+    VeilMissed {
+        /// What was asked, relative to the local veil.
+        asked: f64,
+        /// The largest error that was measured, in the same measure.
+        measured: f64,
+    },
+
     /// What was rendered is not finite where the photo is: too bright for 32-bit floats, or a driver's fault.
-    #[error("the glare is infinite or undefined at {pixels} pixels where the photo is not; nothing is written")]
+    #[error("the glare is infinite or undefined at {} where the photo is not; nothing is written", counted(*pixels))]
     NotFinite {
+        /// How many pixels it is at.
+        pixels: usize,
+    },
+
+    /// The glare is finite, and the picture is not where the photo is: their sum is too bright for 32-bit floats.
+    #[error(
+        "the picture is infinite or undefined at {} where photo and glare are not: their sum is beyond what 32-bit floats hold; \
+         nothing is written",
+        counted(*pixels)
+    )]
+    PictureNotFinite {
         /// How many pixels it is at.
         pixels: usize,
     },
@@ -129,8 +149,9 @@ pub enum Error {
     /// Of several photos, some have glare that is further from the truth than was asked.
     #[error(
         "the glare of {missed} of {frames} photos is further off than was asked; {} is the worst, with {measured:.1e} \
-         of its largest value, and {asked:.1e} was asked",
-        worst.display()
+         of {}, and {asked:.1e} was asked",
+        worst.display(),
+        if *veil { "the veil at a pixel" } else { "its largest value" }
     )]
     FramesMissed {
         /// How many missed it.
@@ -139,6 +160,8 @@ pub enum Error {
         frames: usize,
         /// The photo with the largest error.
         worst: PathBuf,
+        /// Whether that is one of its veil, relative to the local veil.
+        veil: bool,
         /// The largest error that was measured, in the same measure.
         measured: f64,
         /// What was asked, relative to the largest glare.
@@ -226,6 +249,7 @@ impl Error {
             Self::ToleranceBelowFloor { .. }
             | Self::BudgetTooSmall { .. }
             | Self::ToleranceMissed { .. }
+            | Self::VeilMissed { .. }
             | Self::FramesMissed { .. }
             | Self::Missed { .. } => 3,
             Self::NoContext { .. } | Self::NoDisplay { .. } => 4,
@@ -271,6 +295,11 @@ fn meant(name: &str, known: &[String]) -> String {
     };
     let best = known.iter().max_by(|a, b| alike(a).total_cmp(&alike(b)));
     best.filter(|best| alike(best) > 0.8).map_or_else(String::new, |best| format!("; did you mean {best}?"))
+}
+
+/// So many pixels.
+fn counted(pixels: usize) -> String {
+    if pixels == 1 { "1 pixel".to_owned() } else { format!("{pixels} pixels") }
 }
 
 fn below_floor(asked: f64, floor: f64) -> String {

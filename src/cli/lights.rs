@@ -21,7 +21,7 @@ use crate::terminal::stdout;
 /// Find the lights in a photo
 ///
 /// Prints each connected region of bright pixels as a light: where its centre is, what flux it has and how large it is.
-/// Positions and sizes are in half picture heights, or in what --unit says, from the picture's centre, x to the right and y up;
+/// Positions and sizes are in halves of the picture's shorter side, or in what --unit says, from the picture's centre, x to the right and y up;
 /// flux is radiance times area, in the photo's unit.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]

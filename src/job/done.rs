@@ -56,7 +56,7 @@ impl Done<'_> {
     /// An error where the glare, or the veil, is further from the truth than was asked.
     ///
     /// # Errors
-    /// [`Error::ToleranceMissed`](crate::Error::ToleranceMissed).
+    /// [`Error::ToleranceMissed`](crate::Error::ToleranceMissed), [`Error::VeilMissed`](crate::Error::VeilMissed).
     pub fn check(&self) -> Result<()> {
         self.computed.as_ref().map_or(Ok(()), |computed| computed.certificate.check())?;
         self.veiled.as_ref().map_or(Ok(()), |veiled| veiled.error.check())

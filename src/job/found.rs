@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::planned::stays_finite;
-use super::{Computer, Done, Planned, Stages, Step, Wanted, Watch, bright_light, plan, settings, veil};
+use super::{Computer, Done, Planned, Stages, Step, Wanted, Watch, bright_light, panorama, plan, settings, veil};
 use crate::Result;
 use crate::frame::Frame;
 use crate::look::{Gathered, Look, Search};
@@ -59,6 +59,9 @@ impl<'a> Found<'a> {
         let bright = |threshold| bright_light(&photo, &frame, threshold);
         let (settings, warning) = settings(look, &photo, &scene, bright)?;
         warnings.extend(warning);
+        if look.strength != 0.0 && (look.veil.is_some() || !scene.ghosts.is_empty()) {
+            warnings.extend(panorama::seam(&photo));
+        }
         Ok(Self { look, facts: photo.facts(), photo, frame, bad, scene, stages, warnings, settings })
     }
 
@@ -106,7 +109,7 @@ impl<'a> Found<'a> {
         if let (Some(change), Some(picture)) = (change, &mut picture) {
             stages.time("composite", || change.add_to(&mut picture.pixels));
         }
-        stays_finite(picture.as_ref(), before, glare.as_ref(), 0)?;
+        stays_finite(picture.as_ref(), before, glare.as_ref(), cast.as_ref(), 0)?;
         let veiled = cast.map(|cast| cast.veiled);
         warnings.extend(veiled.as_ref().and_then(|veiled| Some(veiled.error.check().err()?.to_string())));
         Ok(Done { look, frame, facts, bad, scene, picture, glare, computed: None, veiled, stages, warnings })

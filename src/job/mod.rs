@@ -26,6 +26,7 @@ mod computer;
 mod done;
 mod excess;
 mod found;
+mod panorama;
 mod planned;
 mod planning;
 mod settings;
@@ -45,7 +46,9 @@ pub use planned::Planned;
 pub(crate) use planning::request;
 pub use planning::{Planning, plan};
 pub use settings::{bright_light, settings};
-pub use veil::{Ledger, MOST_LAYERS, NoSources, VeilError, VeilLayers, VeilPlanned, VeilSums, Veiled, plan_veil};
+pub use veil::{
+    Ledger, MOST_LAYERS, NoSources, VeilError, VeilLayers, VeilPlanned, VeilSeen, VeilSums, Veiled, plan_veil,
+};
 #[cfg(feature = "laboratory")]
 pub(crate) use veil::{Trial, plan_of, trials};
 pub use watch::{Step, Unwatched, Watch};

@@ -33,7 +33,7 @@ impl<'a> Planned<'a> {
     /// plan was made for.
     ///
     /// # Errors
-    /// Where the driver refuses; [`Error::NotFinite`]; [`Error::Cancelled`].
+    /// Where the driver refuses; [`Error::NotFinite`], [`Error::PictureNotFinite`]; [`Error::Cancelled`].
     pub fn render(self, computer: &mut Computer, wanted: Wanted, watch: &impl Watch) -> Result<Done<'a>> {
         let Self { found, planning, info } = self;
         let Found { look, photo, frame, facts, bad, scene, mut stages, mut warnings, settings } = found;
@@ -66,7 +66,7 @@ impl<'a> Planned<'a> {
             }
             None => None,
         };
-        stays_finite(picture.as_ref(), before, glare.as_ref(), certificate.not_finite)?;
+        stays_finite(picture.as_ref(), before, glare.as_ref(), cast.as_ref(), certificate.not_finite)?;
         let computed = Some(Computed { info, planning, certificate, passes, measured_ms });
         let veiled = cast.map(|cast| cast.veiled);
         warnings.extend(veiled.as_ref().and_then(|veiled| Some(veiled.error.check().err()?.to_string())));
@@ -132,17 +132,21 @@ fn certify(
     })
 }
 
-/// An error where the picture is not finite though the photo is, but for `before` pixels, or where the glare is not.
+/// An error where the picture is not finite though the photo is, but for `before` pixels, or where the glare is not; the veil is
+/// part of it.
 pub(super) fn stays_finite(
     picture: Option<&Photo>,
     before: usize,
     glare: Option<&Photo>,
+    veil: Option<&veil::Cast>,
     not_finite: usize,
 ) -> Result<()> {
     let count = |photo: Option<&Photo>| photo.map_or(0, |photo| photo::not_finite(&photo.pixels));
-    match count(picture).saturating_sub(before).max(count(glare)).max(not_finite) {
-        0 => Ok(()),
-        pixels => Err(Error::NotFinite { pixels }),
+    let of_glare = count(glare).max(not_finite).max(veil.map_or(0, veil::Cast::not_finite));
+    match (of_glare, count(picture).saturating_sub(before)) {
+        (0, 0) => Ok(()),
+        (0, pixels) => Err(Error::PictureNotFinite { pixels }),
+        (of_glare, pixels) => Err(Error::NotFinite { pixels: pixels.max(of_glare) }),
     }
 }
 

@@ -7,7 +7,8 @@ use crate::scene::{AccuracySection, FindOptions, FindSection, LookSection, Scene
 use crate::{Error, Result};
 
 impl Look {
-    /// The look that a scene file describes; what it leaves open is as by default.
+    /// The look that a scene file describes; what it leaves open is as by default, but for the unit of its lengths, which is
+    /// [`LengthUnit::OF_FILES`].
     ///
     /// # Errors
     /// [`Error::UnknownPreset`] for a preset that there is not, which no file that was read names; [`Error::Usage`] for a veil that
@@ -47,7 +48,7 @@ impl Look {
         Ok(Self {
             description: scene.description,
             lens,
-            unit: unit.unwrap_or_default(),
+            unit: unit.unwrap_or(LengthUnit::OF_FILES),
             fov: fov.or(of_veil).or(of_lens),
             axis: scene.axis.unwrap_or_default(),
             size: size.unwrap_or(1.0),
@@ -107,8 +108,7 @@ impl Look {
                 // To say of a veil that it is added is to say more than nothing.
                 mix: veil.as_ref().is_none_or(|veil| veil.adds || *mix != Mix::Add).then_some(*mix),
                 normalize: Some(*normalize),
-                // As in files from before there were others.
-                unit: (*unit != LengthUnit::default()).then_some(*unit),
+                unit: (*unit != LengthUnit::OF_FILES).then_some(*unit),
                 fov: if veil.is_some() { None } else { *fov },
             },
             find: FindSection {
@@ -211,8 +211,10 @@ mod tests {
     }
 
     #[test]
-    fn an_empty_file_is_the_default_look() {
-        assert_eq!(Look::from_scene(SceneFile::default()).unwrap(), Look::default());
+    fn an_empty_file_is_the_default_look_in_the_unit_of_files() {
+        let look = Look { unit: LengthUnit::Height, ..Look::default() };
+        assert_eq!(Look::from_scene(SceneFile::default()).unwrap(), look);
+        assert_eq!(through_a_file(&look), look);
     }
 
     #[test]

@@ -95,12 +95,12 @@ pub struct Accuracy {
 }
 
 impl Default for Look {
-    /// The lights of the photo through [`DEFAULT_PRESET`], as they are.
+    /// The lights of the photo through [`DEFAULT_PRESET`], as they are, in a unit that stays the same when the photo is turned.
     fn default() -> Self {
         Self {
             description: String::new(),
             lens: LookLens::preset(DEFAULT_PRESET).expect("the default preset is compiled in"),
-            unit: LengthUnit::default(),
+            unit: LengthUnit::ShortSide,
             fov: None,
             axis: DVec2::ZERO,
             size: 1.0,

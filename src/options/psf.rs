@@ -11,35 +11,35 @@ use crate::{Error, Result};
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct PsfArgs {
     /// Of cie, cie135, stiles-holladay: the observer's age in years, 0 to 120 [default: 25]
-    #[arg(long, value_name = "YEARS", value_parser = finite)]
+    #[arg(long, value_name = "YEARS", allow_negative_numbers = true, value_parser = finite)]
     age: Option<f64>,
 
     /// Of cie, cie135: the pigment of the observer's eyes, 0 (black) over 0.5 (brown) to 1.2 (light blue) [default: 0.5]
-    #[arg(long, value_name = "P", value_parser = finite)]
+    #[arg(long, value_name = "P", allow_negative_numbers = true, value_parser = finite)]
     pigment: Option<f64>,
 
     /// Of spencer: what the eye is adapted to [default: photopic]
     #[arg(long, value_enum)]
     luminance: Option<Luminance>,
 
-    /// Of gaussian: the standard deviation, in the look's unit, half picture heights by default
-    #[arg(long, value_name = "W", value_parser = finite)]
+    /// Of gaussian: the standard deviation, in the look's unit
+    #[arg(long, value_name = "W", allow_negative_numbers = true, value_parser = finite)]
     width: Option<f64>,
 
     /// Of mixture: standard deviations, in the look's unit
-    #[arg(long, value_name = "W,W,...", value_delimiter = ',', value_parser = finite)]
+    #[arg(long, value_name = "W,W,...", value_delimiter = ',', allow_hyphen_values = true, value_parser = finite)]
     widths: Option<Vec<f64>>,
 
     /// Of mixture: how much light each Gaussian has of it, as ratios [default: all as much]
-    #[arg(long, value_name = "E,E,...", value_delimiter = ',', value_parser = finite)]
+    #[arg(long, value_name = "E,E,...", value_delimiter = ',', allow_hyphen_values = true, value_parser = finite)]
     weights: Option<Vec<f64>>,
 
     /// Of mixture: the colour of each Gaussian [default: all white]
-    #[arg(long, value_name = "R,G,B;R,G,B;...", value_delimiter = ';', value_parser = colour)]
+    #[arg(long, value_name = "R,G,B;R,G,B;...", value_delimiter = ';', allow_hyphen_values = true, value_parser = colour)]
     tints: Option<Vec<[f64; 3]>>,
 
     /// Of abg: a / (b + r^g), r in the look's unit, up to the radius END, nothing beyond; below g = 2.05 there must be one
-    #[arg(long, value_name = "A,B,G[,END]", value_parser = tail)]
+    #[arg(long, value_name = "A,B,G[,END]", allow_hyphen_values = true, value_parser = tail)]
     abg: Option<Tail>,
 
     /// Of table: a CSV file of radius, in the look's unit, and value; nothing beyond its last row
@@ -51,7 +51,7 @@ pub struct PsfArgs {
     kernel: Option<PathBuf>,
 
     /// The share of the light that is scattered, above 0 and at most 1 [default: the function's own]
-    #[arg(long, value_name = "F", value_parser = finite)]
+    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = finite)]
     scatter: Option<f64>,
 }
 
@@ -110,8 +110,11 @@ impl PsfArgs {
     }
 }
 
-/// What is wrong with a function, by the option that says it.
+/// What is wrong with a function, by the option that says it, or by the file that cannot be read.
 pub fn wrong(fault: &Fault) -> Error {
+    if let Some(path) = &fault.unread {
+        return Error::scene_file(path, &fault.reason);
+    }
     let option = match fault.key {
         "a" | "b" | "g" | "end" => "abg",
         "psf" => "veil",

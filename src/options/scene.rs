@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use glam::DVec2;
 
 use crate::Result;
-use crate::choices::Mix;
+use crate::choices::{LengthUnit, Mix};
 use crate::look::{Look, LookLens, LookLights};
 use crate::options::UnitArgs;
 use crate::options::numbers::point;
@@ -40,7 +40,7 @@ pub struct SceneArgs {
     #[arg(long, value_name = "FILE")]
     add_lights: Option<PathBuf>,
 
-    /// Where the lens's axis meets the picture, in half picture heights (or --unit) from its centre: ghosts lie on lines through it
+    /// Where the lens's axis meets the picture, in the look's unit (see --unit) from its centre: ghosts lie on lines through it
     /// [default: 0,0]
     #[arg(long, value_name = "X,Y", value_parser = point, allow_hyphen_values = true)]
     axis: Option<DVec2>,
@@ -73,12 +73,18 @@ impl SceneArgs {
     /// # Errors
     /// [`crate::Error::SceneFile`] for a file that is not right, [`crate::Error::UnknownPreset`].
     pub fn look(&self) -> Result<Look> {
-        let file = self.scene.as_deref().map(scene::read_scene).transpose()?.unwrap_or_default();
-        let (says_veil, adds) = (file.veil.is_some() || file.no_veil, file.look.mix == Some(Mix::Add));
-        let mut look = self.unit.over(Look::from_scene(file)?);
+        let file = self.scene.as_deref().map(scene::read_scene).transpose()?;
+        let says_veil = file.as_ref().is_some_and(|file| file.veil.is_some() || file.no_veil);
+        let adds = file.as_ref().is_some_and(|file| file.look.mix == Some(Mix::Add));
+        let look = file.map(Look::from_scene).transpose()?;
+        let names_unit = look.is_some() || self.unit.names_one();
+        let mut look = self.unit.over(look.unwrap_or_default());
         if let Some(lens) = self.lens()? {
             // What a scene says of the veil is said of any lens.
             look = if says_veil { Look { lens, ..look } } else { look.through(lens, adds)? };
+        }
+        if let Some(unit) = self.unit_of_lights()?.filter(|_| !names_unit) {
+            look.unit = unit;
         }
         if let Some(path) = &self.lights {
             look.lights = LookLights::Listed(scene::read_lights_in(path, look.unit)?.into());
@@ -88,5 +94,13 @@ impl SceneArgs {
         }
         look.axis = self.axis.unwrap_or(look.axis);
         Ok(look)
+    }
+
+    /// The unit of the lights that files list; of two that differ, that which no file can name.
+    fn unit_of_lights(&self) -> Result<Option<LengthUnit>> {
+        let files = [&self.lights, &self.add_lights].into_iter().flatten();
+        let units = files.map(|path| scene::unit_of_lights(path)).collect::<Result<Vec<_>>>()?;
+        let unnamed = units.contains(&None).then_some(LengthUnit::OF_FILES);
+        Ok(unnamed.or(units.first().copied().flatten()))
     }
 }

@@ -9,13 +9,14 @@ use crate::{Error, Result};
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(next_help_heading = "Scene")]
 pub struct UnitArgs {
-    /// What lengths are counted in, those of sizes as well as of positions [default: height]
+    /// What lengths are counted in, those of sizes as well as of positions [default: short-side, and of a scene or of lights from a
+    /// file what that says, or height]
     #[arg(long, value_enum)]
     unit: Option<LengthUnit>,
 
     /// The field of view across the picture's width, in degrees, for all that is in degrees: 0.1 to 179 [default: what the
     /// photo's file says]
-    #[arg(long, value_name = "DEGREES", value_parser = finite)]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = finite)]
     fov: Option<f64>,
 }
 
@@ -23,6 +24,11 @@ impl UnitArgs {
     /// What is given wins over what was set before.
     pub fn over(&self, look: Look) -> Look {
         Look { unit: self.unit.unwrap_or(look.unit), fov: self.fov.or(look.fov), ..look }
+    }
+
+    /// Whether a unit is given.
+    pub fn names_one(&self) -> bool {
+        self.unit.is_some()
     }
 
     /// Whether what is given counts for anything in a look.

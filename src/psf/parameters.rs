@@ -156,6 +156,25 @@ pub struct Parameters {
 }
 
 impl Parameters {
+    /// The keys that there are, as they are written.
+    pub const KEYS: [&str; 15] = [
+        "psf",
+        "age",
+        "pigment",
+        "luminance",
+        "width",
+        "widths",
+        "weights",
+        "tints",
+        "a",
+        "b",
+        "g",
+        "end",
+        "table",
+        "kernel",
+        "scatter",
+    ];
+
     /// A function and nothing else.
     pub fn new(psf: Name) -> Self {
         Self {

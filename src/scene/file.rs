@@ -169,6 +169,15 @@ pub fn read_lights_in(path: &Path, unit: LengthUnit) -> Result<Vec<Light>> {
     }
 }
 
+/// The unit that a file of lights names; none where it does not, which means [`LengthUnit::OF_FILES`].
+///
+/// # Errors
+///
+/// Like [`read_lights`].
+pub fn unit_of_lights(path: &Path) -> Result<Option<LengthUnit>> {
+    lights(path).map(|(_, unit)| unit)
+}
+
 /// The lights of a file, and their unit where it says that.
 fn lights(path: &Path) -> Result<(Vec<Light>, Option<LengthUnit>)> {
     let text = text(path)?;

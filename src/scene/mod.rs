@@ -21,7 +21,7 @@ mod veil;
 mod write;
 
 pub use emission::{Emission, is_light};
-pub use file::{SceneFile, read_lens, read_lights, read_lights_in, read_scene};
+pub use file::{SceneFile, read_lens, read_lights, read_lights_in, read_scene, unit_of_lights};
 pub use find::{FindOptions, Found, find};
 pub use lens::{Lens, LensVeil, ghosts};
 pub(crate) use referred::referred;

@@ -8,6 +8,7 @@ use super::bells::{BellKeys, BellName, Bells, Fault, ProfileTable};
 use super::number::{Degree, Finite, NotNegative, Number, Positive, Sizes, plain};
 use super::presets;
 use super::sections::{AccuracyTable, FindSection, LookSection};
+use super::veil::VeilTable;
 use super::{Ghost, LensGhost, Light};
 use crate::choices::LengthUnit;
 
@@ -26,7 +27,7 @@ pub(super) struct SceneTable {
     #[serde(default)]
     pub find: FindSection,
     pub accuracy: Option<AccuracyTable>,
-    pub veil: Option<Spanned<toml::Table>>,
+    pub veil: Option<Spanned<VeilTable>>,
     #[serde(default, rename = "profile")]
     pub profiles: Vec<ProfileTable>,
     #[serde(rename = "light")]
@@ -47,7 +48,7 @@ pub(super) struct LensTable {
     pub profiles: Vec<ProfileTable>,
     #[serde(rename = "lens_ghost")]
     pub ghosts: Vec<LensGhostTable>,
-    pub veil: Option<Spanned<toml::Table>>,
+    pub veil: Option<Spanned<VeilTable>>,
 }
 
 /// A file of lights in TOML.

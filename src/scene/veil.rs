@@ -1,14 +1,18 @@
 //! What a scene file says of the veil, and the function that it names.
 
+use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 use toml::{Spanned, Table, Value};
 
 use super::LensVeil;
 use super::bells::Fault;
 use super::file::contents;
+use crate::Error;
 use crate::choices::{Border, Projection};
 use crate::photo;
 use crate::psf::{self, Kernel, Parameters, Psf};
@@ -75,15 +79,18 @@ impl From<Psf> for VeilFunction {
 
 /// What a file of radius and value holds.
 fn table(path: &Path) -> Result<String, psf::Fault> {
-    let fault = |reason: String| psf::Fault::new("table", format!("{} {reason}", path.display()));
+    let fault = |reason: String| psf::Fault::of_file("table", path, reason);
     let bytes = contents(path).map_err(fault)?;
     String::from_utf8(bytes).map_err(|_| fault("is not UTF-8 text".into()))
 }
 
 /// A picture as a kernel.
 fn kernel(path: &Path) -> Result<Kernel, psf::Fault> {
-    let fault = |reason: String| psf::Fault::new("kernel", reason);
-    let photo = photo::read(path).map_err(|error| fault(error.to_string()))?;
+    let photo = photo::read(path).map_err(|error| match error {
+        // It is no photo that is missing.
+        Error::ReadPhoto { path, reason } => psf::Fault::of_file("kernel", &path, format!("cannot be read: {reason}")),
+        error => psf::Fault::of_file("kernel", path, format!("cannot be read: {error}")),
+    })?;
     let pixels = photo.pixels.iter().map(|&[r, g, b, _]| [r, g, b].map(f64::from)).collect();
     Kernel::new(photo.height() as usize, photo.width() as usize, pixels)
 }
@@ -100,46 +107,90 @@ pub fn check_fov(fov: f64, projection: Option<Projection>) -> Result<(), psf::Fa
 /// What `psf` is where there is to be no veil.
 pub const NO_VEIL: &str = "none";
 
+/// `[veil]` as it is written: the keys and what they say, each with its place.
+pub(super) type VeilTable = BTreeMap<Spanned<String>, Spanned<Value>>;
+
+/// The key of a lens's veil alone.
+const REPLACES_GHOSTS: &str = "replaces_ghosts";
+/// Those that are no function's.
+const OF_SECTION: [&str; 4] = ["fov", "projection", "border", "tolerance"];
+
 /// The veil of a lens, as a table of the file at `path` says it.
-pub(super) fn of_lens(path: &Path, mut table: Spanned<Table>) -> Result<Option<LensVeil>, Fault> {
-    let replaces_ghosts = match table.as_mut().remove("replaces_ghosts") {
-        None => false,
-        Some(Value::Boolean(replaces)) => replaces,
-        Some(other) => {
-            let message = format!("expected true or false, found {other} in `veil.replaces_ghosts`");
-            return Err(Fault { span: table.span(), message });
-        }
-    };
-    Ok(section(path, table)?.map(|section| LensVeil { section, replaces_ghosts }))
+pub(super) fn of_lens(path: &Path, mut table: Spanned<VeilTable>) -> Result<Option<LensVeil>, Fault> {
+    let replaces_ghosts =
+        table.as_mut().remove(REPLACES_GHOSTS).map(|value| said(REPLACES_GHOSTS, value)).transpose()?;
+    let section = parsed(path, table, &[REPLACES_GHOSTS])?;
+    Ok(section.map(|section| LensVeil { section, replaces_ghosts: replaces_ghosts.unwrap_or(false) }))
 }
 
 /// The section that a table of the file at `path` is; none where it says that there is none.
-pub(super) fn section(path: &Path, table: Spanned<Table>) -> Result<Option<VeilSection>, Fault> {
-    let span = table.span();
-    let at = |message: String| Fault { span: span.clone(), message };
+pub(super) fn section(path: &Path, table: Spanned<VeilTable>) -> Result<Option<VeilSection>, Fault> {
+    parsed(path, table, &[])
+}
+
+/// The same, of a table that may have had some more keys.
+fn parsed(path: &Path, table: Spanned<VeilTable>, more: &[&str]) -> Result<Option<VeilSection>, Fault> {
+    let whole = table.span();
     let mut table = table.into_inner();
-    if table.get("psf").and_then(Value::as_str) == Some(NO_VEIL) {
-        return match table.keys().find(|key| *key != "psf") {
-            Some(key) => Err(at(format!("`veil.{key}` is of no veil, and `psf` is \"{NO_VEIL}\""))),
+    if table.get("psf").is_some_and(|psf| psf.as_ref().as_str() == Some(NO_VEIL)) {
+        return match table.keys().find(|key| key.as_ref() != "psf") {
+            Some(key) => {
+                let message = format!("`veil.{}` is of no veil, and `psf` is \"{NO_VEIL}\"", key.as_ref());
+                Err(Fault { span: key.span(), message })
+            }
             None => Ok(None),
         };
     }
-    let fov = number(&mut table, "fov").map_err(at)?;
-    let tolerance = number(&mut table, "tolerance").map_err(at)?;
+    let places: BTreeMap<String, Range<usize>> =
+        table.iter().map(|(key, value)| (key.as_ref().clone(), value.span())).collect();
+    // What is wrong with a key is told where it stands.
+    let located = |fault: psf::Fault| {
+        let span = places.get(fault.key).unwrap_or(&whole).clone();
+        Fault { span, message: format!("{} in `veil.{}`", fault.in_words(), fault.key) }
+    };
+    let tolerance = number(&mut table, "tolerance")?;
     if let Some(tolerance) = tolerance.filter(|tolerance| !(*tolerance > 0.0 && *tolerance < 1.0)) {
-        return Err(at(format!("expected a number between 0 and 1, found {tolerance} in `veil.tolerance`")));
+        let reason = format!("expected a number between 0 and 1, found {tolerance}");
+        return Err(located(psf::Fault::new("tolerance", reason)));
     }
-    let projection = choice(&mut table, "projection").map_err(at)?;
-    let border = choice(&mut table, "border").map_err(at)?;
-    let known = |error: toml::de::Error| at(format!("{} in `veil`", error.message()));
-    let mut parameters: Parameters = Value::Table(table).try_into().map_err(known)?;
+    let fov = number(&mut table, "fov")?;
+    let projection = table.remove("projection").map(|value| said("projection", value)).transpose()?;
+    let border = table.remove("border").map(|value| said("border", value)).transpose()?;
+    let mut parameters = parameters(table, &whole, more)?;
     for file in [&mut parameters.table, &mut parameters.kernel].into_iter().flatten() {
         *file = absolute(&path.parent().unwrap_or(Path::new("")).join(&file));
     }
-    let fault = |fault: psf::Fault| at(format!("{} in `veil.{}`", fault.reason, fault.key));
-    fov.map_or(Ok(()), |fov| check_fov(fov, projection)).map_err(fault)?;
-    VeilFunction::new(&parameters).map_err(fault)?;
+    fov.map_or(Ok(()), |fov| check_fov(fov, projection)).map_err(located)?;
+    VeilFunction::new(&parameters).map_err(located)?;
     Ok(Some(VeilSection { parameters, fov, projection, border, tolerance }))
+}
+
+/// The function's own keys; `more` are others that the table may have had.
+fn parameters(table: VeilTable, whole: &Range<usize>, more: &[&str]) -> Result<Parameters, Fault> {
+    let keys = || Parameters::KEYS.into_iter().chain(OF_SECTION).chain(more.iter().copied());
+    if let Some(key) = table.keys().find(|key| !keys().any(|known| known == key.as_ref())) {
+        let known: Vec<String> = keys().map(|key| format!("`{key}`")).collect();
+        let message = format!("unknown field `{}`, expected one of {} in `veil`", key.as_ref(), known.join(", "));
+        return Err(Fault { span: key.span(), message });
+    }
+    let missing = || Fault { span: whole.clone(), message: "missing field `psf` in `veil`".into() };
+    let psf = table.get("psf").ok_or_else(missing)?.clone();
+    said::<psf::Name>("psf", psf.clone())?;
+    let psf = ("psf".to_owned(), psf.into_inner());
+    let plain = table.into_iter().map(|(key, value)| (key.into_inner(), value));
+    let mut all = Table::new();
+    // One by one, to know which it is that is wrong.
+    for (key, value) in plain {
+        let span = value.span();
+        let value = value.into_inner();
+        let alone = Table::from_iter([psf.clone(), (key.clone(), value.clone())]);
+        let told = |error: toml::de::Error| Fault { span, message: format!("{} in `veil.{key}`", error.message()) };
+        Value::Table(alone).try_into::<Parameters>().map_err(told)?;
+        all.insert(key, value);
+    }
+    let whole =
+        |error: toml::de::Error| Fault { span: whole.clone(), message: format!("{} in `veil`", error.message()) };
+    Value::Table(all).try_into().map_err(whole)
 }
 
 /// A path that means the same from everywhere.
@@ -148,16 +199,20 @@ pub fn absolute(path: &Path) -> PathBuf {
 }
 
 /// A number under a key, whole or not.
-fn number(table: &mut Table, key: &str) -> Result<Option<f64>, String> {
-    match table.remove(key) {
-        None => Ok(None),
-        Some(Value::Float(number)) => Ok(Some(number)),
-        Some(Value::Integer(number)) => Ok(Some(number as f64)),
-        Some(other) => Err(format!("expected a number, found {other} in `veil.{key}`")),
+fn number(table: &mut VeilTable, key: &str) -> Result<Option<f64>, Fault> {
+    let Some(value) = table.remove(key) else { return Ok(None) };
+    match value.as_ref() {
+        Value::Float(number) => Ok(Some(*number)),
+        Value::Integer(number) => Ok(Some(*number as f64)),
+        other => {
+            Err(Fault { span: value.span(), message: format!("expected a number, found {other} in `veil.{key}`") })
+        }
     }
 }
 
-fn choice<T: serde::de::DeserializeOwned>(table: &mut Table, key: &str) -> Result<Option<T>, String> {
-    let told = |error: toml::de::Error| format!("{} in `veil.{key}`", error.message());
-    table.remove(key).map(|value| value.try_into().map_err(told)).transpose()
+/// What a key says.
+fn said<T: DeserializeOwned>(key: &str, value: Spanned<Value>) -> Result<T, Fault> {
+    let span = value.span();
+    let told = |error: toml::de::Error| Fault { span, message: format!("{} in `veil.{key}`", error.message()) };
+    value.into_inner().try_into().map_err(told)
 }

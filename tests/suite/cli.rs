@@ -22,6 +22,7 @@ mod tradeoff;
 mod unchanged;
 mod units;
 mod veil;
+mod veil_told;
 mod view;
 
 use std::path::{Path, PathBuf};

@@ -9,16 +9,16 @@ use crate::options::numbers::{colour, not_negative, positive};
 #[command(next_help_heading = "Look")]
 pub struct LookArgs {
     /// What the glare is multiplied by, 0 or more; 0 writes the photo as it is [default: 1]
-    #[arg(long, value_name = "S", value_parser = not_negative)]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = not_negative)]
     strength: Option<f64>,
 
     /// What the size of every ghost, and of a veil on the picture's plane, is multiplied by, above 0; its light stays as much as it
     /// is [default: 1]
-    #[arg(long, value_name = "F", value_parser = positive)]
+    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = positive)]
     size: Option<f64>,
 
     /// What the colour of every ghost is multiplied by, 0 or more each [default: 1,1,1]
-    #[arg(long, value_name = "R,G,B", value_parser = colour)]
+    #[arg(long, value_name = "R,G,B", allow_hyphen_values = true, value_parser = colour)]
     tint: Option<[f64; 3]>,
 
     /// Whether the ghosts' light is added, or taken from the photo's lights [default: add]. A veil takes its light from every

@@ -6,10 +6,10 @@ use super::job::Job;
 use super::report::kind_name;
 use crate::Result;
 use crate::certificate::Verify;
-use crate::choices::{LengthUnit, Processor};
+use crate::choices::{Border, LengthUnit, Processor};
 use crate::cli::found;
 use crate::cli::plan::text;
-use crate::job::{Computed, Done, Veiled};
+use crate::job::{Computed, Done, VeilSeen, Veiled};
 use crate::look::{Gathered, Look, LookLights};
 use crate::photo::Facts;
 use crate::scene::Found;
@@ -70,11 +70,12 @@ fn about_photo(out: &mut dyn Write, job: &Job<'_, Done<'_>>) -> io::Result<()> {
     Ok(())
 }
 
-/// What lengths are counted in, where that is not as by default.
+/// What lengths are counted in, where that is not half the picture's height.
 fn about_unit(out: &mut dyn Write, work: &Done<'_>) -> io::Result<()> {
     let (unit, pixels) = (work.look.unit, work.frame.pixel_size().recip());
     match unit {
         LengthUnit::Height => Ok(()),
+        LengthUnit::ShortSide if work.frame.unit == 1.0 => Ok(()),
         LengthUnit::Degrees => writeln!(out, "unit     degrees, of {pixels:.1} pixels in the middle of the picture"),
         _ => writeln!(out, "unit     half the picture's {}, {pixels:.1} pixels", unit.to_string().replace('-', " ")),
     }
@@ -128,22 +129,22 @@ fn about_found(out: &mut dyn Write, found: &Found, look: &Look) -> io::Result<()
 
 /// What every pixel scattered, how exactly, and what became of the light.
 fn about_veil(out: &mut dyn Write, veiled: &Veiled) -> io::Result<()> {
-    let Veiled { parameters, projection, fov, fov_from, strength, scattered, terms, error, ledger, dark, .. } = veiled;
+    let Veiled { seen, strength, scattered, error, ledger, dark, .. } = veiled;
+    let VeilSeen { parameters, projection, fov, fov_from, border: _ } = seen;
     write!(out, "veil     {}", parameters.psf)?;
     if let Some((fov, from)) = fov.zip(fov_from.as_ref()) {
         write!(out, ", {from}: {} across a {} picture", text::angle(fov), said(projection))?;
     }
     let mean = |values: [f64; 3]| values.into_iter().sum::<f64>() / 3.0;
-    write!(out, ": scatters {:.1} % of the light, by {terms} Gaussians", 100.0 * strength * mean(*scattered))?;
+    let by = text::summed(&veiled.summed_by, veiled.terms);
+    write!(out, ": scatters {:.1} % of the light, by {by}", 100.0 * strength * mean(*scattered))?;
     // The CPU is what one expects.
     writeln!(out, "{}", if veiled.computed_by == Processor::Gl { ", on the device" } else { "" })?;
     let share = |part: [f64; 3]| 100.0 * mean(part) / mean(ledger.light);
     if mean(ledger.light) > 0.0 {
         let [kept, inside, lost] = [ledger.kept, ledger.inside, ledger.lost].map(share);
-        writeln!(
-            out,
-            "light    {kept:.1} % stays, {inside:.1} % falls elsewhere in the picture, {lost:.1} % leaves it"
-        )?;
+        let rest = rest(veiled, kept, lost);
+        writeln!(out, "light    {kept:.1} % stays, {inside:.1} % falls elsewhere in the picture, {rest}")?;
     }
     let dark: usize = dark.iter().sum();
     if dark > 0 {
@@ -154,6 +155,21 @@ fn about_veil(out: &mut dyn Write, veiled: &Veiled) -> io::Result<()> {
         "error    of the veil, by its own brightness at each pixel: {:.1e} measured at {} pixels, {:.1e} predicted, {:.1e} asked",
         error.measured, error.pixels, error.predicted, error.asked
     )
+}
+
+/// What becomes of the rest of the light, of which a share in percent is kept and another is lost; there may be more than there was.
+fn rest(veiled: &Veiled, kept: f64, lost: f64) -> String {
+    // What a tenth of a percent does not show.
+    if lost > -0.05 {
+        return format!("{:.1} % leaves it", lost.max(0.0));
+    }
+    let why = match veiled.seen.border {
+        _ if veiled.adds => "the veil is added, and the photo keeps its own light",
+        _ if kept > 100.0 => "pixels are coarser than the function's core",
+        Border::Mirror | Border::Extend => "some comes from beyond the edges",
+        Border::None => "the veil's error is as large",
+    };
+    format!("and {:.1} % more than there was: {why}", -lost)
 }
 
 /// A choice as it is written.

@@ -44,6 +44,8 @@ struct Worst {
     photo: PathBuf,
     measured: f64,
     asked: f64,
+    /// Whether it is one of the veil.
+    veil: bool,
 }
 
 #[derive(Serialize)]
@@ -134,11 +136,12 @@ impl<'a> Tally<'a> {
         }
         self.measured += usize::from(glare.or(veil).is_some());
         self.missed += usize::from(job.work.check().is_err());
-        for (measured, asked) in glare.into_iter().chain(veil) {
+        let of = |error: Option<(f64, f64)>, veil| error.map(|(measured, asked)| (measured, asked, veil));
+        for (measured, asked, veil) in of(glare, false).into_iter().chain(of(veil, true)) {
             // Not a number is worse than any, in this order.
             let worse = |worst: &Worst| measured.abs().total_cmp(&worst.measured.abs()).is_gt();
             if self.worst.as_ref().is_none_or(worse) {
-                self.worst = Some(Worst { photo: job.paths.input.clone(), measured, asked });
+                self.worst = Some(Worst { photo: job.paths.input.clone(), measured, asked, veil });
             }
         }
         if let Some(path) = &self.args.output_options.report {
@@ -181,6 +184,7 @@ impl<'a> Tally<'a> {
                 missed: self.missed,
                 frames,
                 worst: worst.photo.clone(),
+                veil: worst.veil,
                 measured: worst.measured,
                 asked: worst.asked,
             }),

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::job::{Planning, VeilPlanned};
+use crate::job::{Planning, VeilPlanned, VeilSeen};
 use crate::plan::{Cost, Evaluator, Gathering, Group, Plan, Source, Transform};
 use crate::series::moments::Cells;
 
@@ -34,28 +34,49 @@ pub fn plan(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
 
 /// What is planned of a veil, in three lines.
 pub fn veil(out: &mut dyn Write, veil: &VeilPlanned) -> io::Result<()> {
-    let VeilPlanned { parameters, projection, fov, fov_from, scattered, terms, asked, predicted, rounding, .. } = veil;
+    let VeilPlanned { seen, scattered, asked, predicted, rounding, .. } = veil;
+    let VeilSeen { parameters, projection, fov, fov_from, border: _ } = seen;
     write!(out, "veil     {}", parameters.psf)?;
     if let Some((fov, from)) = fov.zip(fov_from.as_ref()) {
         write!(out, ", {from}: {} across", angle(fov))?;
     }
     let share = 100.0 * scattered.iter().sum::<f64>() / 3.0;
     let projection = format!("{projection:?}").to_lowercase();
-    writeln!(out, ", {projection}: scatters {share:.1} % of the light, by {terms} Gaussians")?;
-    write!(out, "         {} on the pixels", veil.direct)?;
-    for (level, count) in (1..).zip(&veil.lattices) {
-        write!(out, ", {count} on a lattice of {}", 1u64 << level)?;
+    writeln!(out, ", {projection}: scatters {share:.1} % of the light, by {}", summed(&veil.summed_by, veil.terms))?;
+    write!(out, "         ")?;
+    if has_gaussians(&veil.summed_by) {
+        write!(out, "{} on the pixels", veil.direct)?;
+        for (level, count) in (1..).zip(&veil.lattices) {
+            write!(out, ", {count} on a lattice of {}", 1u64 << level)?;
+        }
+        write!(out, ", {} left out", veil.dropped)?;
+        if veil.reach > 0.0 {
+            write!(out, ", a kernel of {:.1} pixels", veil.reach)?;
+        }
+        write!(out, "; ")?;
     }
-    write!(out, ", {} left out", veil.dropped)?;
-    if veil.reach > 0.0 {
-        write!(out, ", a kernel of {:.1} pixels", veil.reach)?;
-    }
-    writeln!(out, "; {:.0} operations a pixel and colour", veil.operations)?;
+    writeln!(out, "{:.0} operations a pixel and colour", veil.operations)?;
     writeln!(
         out,
         "         error {predicted:.1e} of the local veil, {rounding:.1e} of it rounding, {asked:.1e} asked"
     )?;
     veil.notes.iter().try_for_each(|note| writeln!(out, "note     {note}"))
+}
+
+/// Whether Gaussians are summed, and not only what they stand for.
+fn has_gaussians(summed_by: &str) -> bool {
+    summed_by.contains("pyramid") || summed_by.contains("sphere")
+}
+
+/// By what a veil is summed, of a function for which so many Gaussians stand.
+pub fn summed(summed_by: &str, terms: usize) -> String {
+    match summed_by {
+        "pyramid" => format!("a pyramid of {terms} Gaussians"),
+        "sphere" => format!("{terms} Gaussians on the sphere"),
+        "transform" => "a transform".to_owned(),
+        "sum" => "a sum of every pixel's light at every other".to_owned(),
+        several => format!("{several}, of {terms} Gaussians"),
+    }
 }
 
 /// An angle to a thousandth of a degree where it is one of these, else to a tenth.
@@ -67,6 +88,9 @@ pub fn angle(degrees: f64) -> String {
 /// All that there is to say of it: groups, lattice, the bounds of the error line by line, and every candidate.
 pub fn details(out: &mut dyn Write, planned: &Planning) -> io::Result<()> {
     let plan = &planned.plan;
+    if plan.ghosts() + plan.dropped == 0 {
+        return Ok(());
+    }
     groups(out, plan)?;
     if let Some(lattice) = &plan.lattice() {
         let ([x, y], over) = (lattice.nodes, lattice.oversampling);

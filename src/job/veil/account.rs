@@ -3,35 +3,30 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::{Seat, light};
-use crate::choices::{Border, Processor, Projection};
+use super::{Seat, VeilSeen, light};
+use crate::choices::Processor;
 use crate::look::Veil as Wanted;
-use crate::psf::Parameters;
 use crate::veil::{self, BadSources};
 use crate::{Error, Result};
 
 /// How a veil was computed, and how exactly.
 #[derive(Debug, Clone, Serialize)]
 pub struct Veiled {
-    /// The function, and what it was given.
+    /// What it is of.
     #[serde(flatten)]
-    pub parameters: Parameters,
-    /// How the picture was taken to be formed, degrees across its width, and what lies beyond it.
-    pub projection: Projection,
-    /// See `projection`; none where the function is not in degrees.
-    pub fov: Option<f64>,
-    /// What that follows from, in words.
-    pub fov_from: Option<String>,
-    /// See `projection`.
-    pub border: Border,
+    pub seen: VeilSeen,
     /// s: what the veil was multiplied by.
     pub strength: f64,
     /// f: the share of the light that is scattered where the strength is 1, RGB.
     pub scattered: [f64; 3],
     /// k(0), per steradian or square of the function's unit, RGB.
     pub centre: [f64; 3],
+    /// Whether the photo keeps all of its own light.
+    pub adds: bool,
     /// Gaussians of the mixture.
     pub terms: usize,
+    /// How it was summed: by a `pyramid` of Gaussians, on the `sphere`, by a `transform`, or by a `sum` of every source at every pixel.
+    pub summed_by: String,
     /// What summed it.
     pub computed_by: Processor,
     /// How exact it is, relative to the local veil.
@@ -63,13 +58,13 @@ impl VeilError {
     /// An error where the veil is further from the truth than was asked.
     ///
     /// # Errors
-    /// [`Error::ToleranceMissed`].
+    /// [`Error::VeilMissed`].
     pub fn check(&self) -> Result<()> {
         // Written so that a NaN would be an error too.
         if self.measured <= self.asked {
             return Ok(());
         }
-        Err(Error::ToleranceMissed { asked: self.asked, measured: self.measured })
+        Err(Error::VeilMissed { asked: self.asked, measured: self.measured })
     }
 }
 
@@ -82,8 +77,19 @@ pub struct Ledger {
     pub kept: [f64; 3],
     /// What falls on its other pixels.
     pub inside: [f64; 3],
-    /// What leaves it.
+    /// What leaves it; negative where there is more than there was.
     pub lost: [f64; 3],
+    /// How much more there is than there was, 0 or more: of a veil that is added, of pixels that are coarser than the function's core
+    /// and are brighter by its definition, from beyond a border, or within the veil's error.
+    pub gained: [f64; 3],
+}
+
+impl Ledger {
+    /// What becomes of `light`, of which so much is kept, and so much falls on other pixels.
+    pub(super) fn of(light: [f64; 3], kept: [f64; 3], inside: [f64; 3]) -> Self {
+        let lost = [0, 1, 2].map(|channel| light[channel] - kept[channel] - inside[channel]);
+        Self { light, kept, inside, lost, gained: lost.map(|lost| (-lost).max(0.0)) }
+    }
 }
 
 /// Samples that count as black, RGB.
@@ -147,7 +153,7 @@ pub(super) fn ledger(sources: &veil::Photo<'_>, planes: &[Vec<f32>; 3], loses: &
     // Row by row in their order, so that a sum is the same every time.
     let rows: Vec<_> = (0..height).into_par_iter().map(row).collect();
     let [light, kept, inside] = rows.into_iter().fold([[0.0; 3]; 3], add);
-    Ledger { light, kept, inside, lost: [0, 1, 2].map(|channel| light[channel] - kept[channel] - inside[channel]) }
+    Ledger::of(light, kept, inside)
 }
 
 /// What of a photo was no source.

@@ -129,17 +129,16 @@ impl VeilLayers {
     /// Where the light is, where the layers have these weights, RGB, and whether the photo keeps its own.
     pub fn ledger(&self, weights: &[[f64; 3]], adds: bool) -> Ledger {
         let light = self.layers.first().map_or([0.0; 3], |layer| layer.ledger.light);
-        let mut ledger = Ledger { light, kept: light, inside: [0.0; 3], lost: [0.0; 3] };
+        let (mut kept, mut inside) = (light, [0.0; 3]);
         for (Layer { ledger: part, .. }, weights) in self.layers.iter().zip(weights) {
             for channel in 0..3 {
                 let weight = weights[channel];
-                ledger.inside[channel] += weight * part.inside[channel];
+                inside[channel] += weight * part.inside[channel];
                 let lost = if adds { 0.0 } else { weight * (light[channel] - part.kept[channel]) };
-                ledger.kept[channel] -= lost;
+                kept[channel] -= lost;
             }
         }
-        ledger.lost = [0, 1, 2].map(|channel| light[channel] - ledger.kept[channel] - ledger.inside[channel]);
-        ledger
+        Ledger::of(light, kept, inside)
     }
 }
 
@@ -214,7 +213,8 @@ mod tests {
                     assert!(off <= 2.0 * TOLERANCE * veil + 1e-6 * size, "{at}: {sum} is not {wanted}");
                 }
             }
-            let Ledger { light, kept, inside, lost } = layers.ledger(&weights, look.veil.as_ref().unwrap().adds);
+            let Ledger { light, kept, inside, lost, gained: _ } =
+                layers.ledger(&weights, look.veil.as_ref().unwrap().adds);
             let told = cast.veiled.ledger;
             for (mine, told) in [(light, told.light), (kept, told.kept), (inside, told.inside), (lost, told.lost)] {
                 for channel in 0..3 {

@@ -11,7 +11,7 @@ use crate::veil::{self, Geometry, Kernel};
 
 /// Products that measuring the error may cost: at some pixels, or where every one is asked for, which large photos have too many of.
 const EFFORT: [f64; 2] = [5e6, 2e10];
-/// Tolerances from which on a kernel may be looked up in a table.
+/// Bounds of the error from which on a kernel may be looked up in a table.
 const LOOKED_UP: f64 = 1e-4;
 /// Pixels that are measured at least.
 const FEWEST: usize = 6;
@@ -51,7 +51,7 @@ pub(super) fn measured(
     border: Border,
     computed: &veil::Veil,
     pixels: &[[usize; 2]],
-    tolerance: f64,
+    predicted: f64,
 ) -> Result<f64> {
     let width = sources.size()[0];
     let largest = |plane: &Vec<f32>| f64::from(plane.par_iter().copied().reduce(|| 0.0, f32::max));
@@ -60,7 +60,7 @@ pub(super) fn measured(
     let angles = geometry.angles(sources.size(), border);
     for (index, (_, definition)) in channels.iter().enumerate() {
         let truth = match definition {
-            Definition::Radial(kernel) if tolerance < LOOKED_UP => {
+            Definition::Radial(kernel) if predicted < LOOKED_UP => {
                 veil::reference::at(sources, geometry, kernel, border, pixels)
             }
             Definition::Radial(kernel) => {

@@ -18,7 +18,7 @@ use crate::choices::Normalize;
 use crate::frame::Frame;
 use crate::look::{Look, Veil as Wanted};
 use crate::photo::{Photo, View};
-use crate::psf::Fault;
+use crate::psf::{Fault, Unit};
 use crate::scene::Emission;
 use crate::veil::{self, Predicted};
 use crate::{Error, Result};
@@ -27,7 +27,7 @@ pub use account::{Ledger, NoSources, VeilError, Veiled};
 use account::{Loss, ledger, no_sources};
 pub use layers::{MOST_LAYERS, VeilLayers, VeilSums};
 use measure::{brightest, looked_at, measured};
-pub use planned::VeilPlanned;
+pub use planned::{VeilPlanned, VeilSeen};
 #[cfg(feature = "laboratory")]
 pub(crate) use planning::plan_of;
 use planning::{Channel, Definition, Held};
@@ -35,6 +35,9 @@ use seat::Seat;
 use summing::{Summed, computed, summed};
 #[cfg(feature = "laboratory")]
 pub(crate) use trials::{Trial, trials};
+
+/// Half a unit in the last place of an f32.
+const HALF_A_UNIT: f64 = 0.5 * f32::EPSILON as f64;
 
 /// A veil that is ready to be laid over its photo.
 pub(super) struct Cast {
@@ -104,10 +107,12 @@ pub(super) fn cast(
     let filled = seat.filled(pixels);
     let sources = veil::Photo::rgba(filled.as_flattened(), seat.size).map_err(failed)?;
     let Summed { veil: computed, by, note } = stages.time("veil", || summed(&channels, &sources, asked, computer))?;
+    // Of a transform the plan knows no more than what it is held to.
+    let certified = computed.certified.into_iter().fold(0.0, f64::max);
     let measured = stages.time("veil certify", || {
         let mut pixels = looked_at(seat.stored, brightest(&stored), verify);
         pixels.iter_mut().for_each(|pixel| *pixel = seat.seen(*pixel));
-        measured(&channels, &sources, &seat.geometry, wanted.border, &computed, &pixels, asked)
+        measured(&channels, &sources, &seat.geometry, wanted.border, &computed, &pixels, certified)
             .map(|error| (error, pixels.len()))
     })?;
     let mut computed = seat.cropped(computed);
@@ -115,21 +120,22 @@ pub(super) fn cast(
     let loses = Loss::new(wanted, seat, strength);
     let scale = strength as f32;
     computed.planes.par_iter_mut().for_each(|plane| plane.iter_mut().for_each(|value| *value *= scale));
-    let veil::Veil { planes, bad, dark, certified, .. } = computed;
-    // Of a transform the plan knows no more than what it is held to.
-    let predicted = certified.into_iter().fold(0.0, f64::max);
+    let veil::Veil { planes, bad, dark, .. } = computed;
+    // The product is rounded.
+    let predicted = certified + if strength == 1.0 { 0.0 } else { HALF_A_UNIT };
     let veiled = Veiled {
-        parameters: wanted.section().parameters,
-        projection: wanted.projection(),
-        fov: view.as_ref().map(|view| view.across(frame, wanted.projection())),
-        fov_from: view.map(|view| view.from),
-        border: wanted.border,
+        seen: VeilSeen::new(wanted, frame, view),
         strength,
         scattered: wanted.psf().energies(),
         centre: wanted.psf().centres(),
+        adds: wanted.adds,
         terms: terms(&channels),
+        summed_by: summed_by(&channels),
         computed_by: by,
-        notes: raised(asked, wanted.tolerance()).into_iter().chain(coarse(loses.in_the_middle())).chain(note).collect(),
+        notes: [raised(asked, wanted.tolerance()), without_size(look, wanted), coarse(loses.in_the_middle()), note]
+            .into_iter()
+            .flatten()
+            .collect(),
         error: VeilError { asked, predicted, measured: measured.0, pixels: measured.1 },
         ledger: ledger(&stored, &planes, &loses),
         dark,
@@ -148,6 +154,17 @@ fn raised(tolerance: f64, asked: f64) -> Option<String> {
     (tolerance > asked).then(|| {
         format!("the veil is held to {tolerance:.1e} of itself instead of {asked:.1e}: the lowest that can be had here")
     })
+}
+
+/// Says so where a size is asked for of a veil that has none.
+fn without_size(look: &Look, veil: &Wanted) -> Option<String> {
+    let why = match veil.psf().unit() {
+        Unit::Look => return None,
+        Unit::Degrees => "is in degrees",
+        Unit::Pixels => "is a picture, one pixel of it for one of the photo",
+    };
+    let (size, name) = (look.size, veil.psf().name());
+    (size != 1.0).then(|| format!("a size of {size} changes nothing of the veil, whose function, {name}, {why}"))
 }
 
 /// Says so where a pixel's own share of what it scatters is more than all of that, and it gains light; of what the one in the middle
@@ -188,6 +205,8 @@ fn told(fault: Fault) -> Error {
 fn failed(error: veil::Error) -> Error {
     match error {
         veil::Error::OutOfReach { asked, best, .. } => Error::ToleranceBelowFloor { asked, floor: best },
+        // A picture that there cannot be: no plan would do.
+        veil::Error::Geometry(reason) => Error::Usage(reason),
         error => Error::Plan(error.to_string()),
     }
 }
@@ -201,6 +220,14 @@ fn weighed(emission: Emission, pixels: &[[f32; 4]]) -> Option<Vec<[f32; 4]>> {
         };
         pixels.par_iter().map(share).collect()
     })
+}
+
+/// How the veil is summed, in a word for each way that a channel of it is.
+fn summed_by(channels: &[Channel]) -> String {
+    let mut ways: Vec<String> = channels.iter().map(|(plan, _)| plan.method().to_string()).collect();
+    ways.sort();
+    ways.dedup();
+    ways.join(" and ")
 }
 
 /// Gaussians of the mixture.
@@ -219,6 +246,12 @@ fn light(value: f32) -> f64 {
 }
 
 impl Cast {
+    /// Pixels at which it is no finite number.
+    pub fn not_finite(&self) -> usize {
+        let finite = |at: usize| self.planes.iter().all(|plane| plane[at].is_finite());
+        (0..self.planes[0].len()).into_par_iter().filter(|&at| !finite(at)).count()
+    }
+
     /// Adds the veil to glare.
     pub fn add_to(&self, glare: &mut [[f32; 4]]) {
         let planes = self.planes.each_ref();

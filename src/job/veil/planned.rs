@@ -1,17 +1,18 @@
-//! What is told of a veil that is only planned.
+//! What is told of a veil that is only planned, and of any.
 
 use serde::Serialize;
 
-use super::{Prepared, predicted, raised, terms};
+use super::{Prepared, predicted, raised, summed_by, terms, without_size};
 use crate::choices::{Border, Projection};
 use crate::frame::Frame;
 use crate::look::{Look, Veil as Wanted};
+use crate::photo::View;
 use crate::psf::Parameters;
 use crate::veil::Predicted;
 
-/// How a veil would be computed, and how exactly.
+/// What is scattered in a picture, and how that is taken to be formed.
 #[derive(Debug, Clone, Serialize)]
-pub struct VeilPlanned {
+pub struct VeilSeen {
     /// The function, and what it was given.
     #[serde(flatten)]
     pub parameters: Parameters,
@@ -23,10 +24,20 @@ pub struct VeilPlanned {
     pub fov_from: Option<String>,
     /// What lies beyond its edges.
     pub border: Border,
+}
+
+/// How a veil would be computed, and how exactly.
+#[derive(Debug, Clone, Serialize)]
+pub struct VeilPlanned {
+    /// What it is of.
+    #[serde(flatten)]
+    pub seen: VeilSeen,
     /// The share of the light that is scattered, by strength and function, RGB.
     pub scattered: [f64; 3],
     /// Gaussians of the mixture.
     pub terms: usize,
+    /// How it is summed: by a `pyramid` of Gaussians, on the `sphere`, by a `transform`, or by a `sum` of every source at every pixel.
+    pub summed_by: String,
     /// The error relative to the local veil that it is held to.
     pub asked: f64,
     /// The bound of that error.
@@ -43,8 +54,20 @@ pub struct VeilPlanned {
     pub dropped: usize,
     /// How far that kernel reaches, in pixels.
     pub reach: f64,
-    /// What a person ought to know: of a tolerance that could not be had.
+    /// What a person ought to know: of a tolerance that could not be had, of a size that changes nothing.
     pub notes: Vec<String>,
+}
+
+impl VeilSeen {
+    pub(super) fn new(wanted: &Wanted, frame: &Frame, view: Option<View>) -> Self {
+        Self {
+            parameters: wanted.section().parameters,
+            projection: wanted.projection(),
+            fov: view.as_ref().map(|view| view.across(frame, wanted.projection())),
+            fov_from: view.map(|view| view.from),
+            border: wanted.border,
+        }
+    }
 }
 
 impl VeilPlanned {
@@ -52,13 +75,10 @@ impl VeilPlanned {
         let Prepared { view, channels, asked, .. } = prepared;
         let Predicted { bound, rounding, operations, direct, lattices, dropped, reach } = predicted(&channels);
         Self {
-            parameters: wanted.section().parameters,
-            projection: wanted.projection(),
-            fov: view.as_ref().map(|view| view.across(frame, wanted.projection())),
-            fov_from: view.map(|view| view.from),
-            border: wanted.border,
+            seen: VeilSeen::new(wanted, frame, view),
             scattered: wanted.psf().energies().map(|energy| look.strength * energy),
             terms: terms(&channels),
+            summed_by: summed_by(&channels),
             asked,
             predicted: bound,
             rounding,
@@ -67,7 +87,7 @@ impl VeilPlanned {
             lattices,
             dropped,
             reach,
-            notes: raised(asked, wanted.tolerance()).into_iter().collect(),
+            notes: raised(asked, wanted.tolerance()).into_iter().chain(without_size(look, wanted)).collect(),
         }
     }
 }

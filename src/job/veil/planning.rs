@@ -8,7 +8,7 @@ use crate::look::{Look, Veil as Wanted};
 #[cfg(feature = "laboratory")]
 use crate::photo::View;
 use crate::psf::{self, Psf, TOLERANCES};
-use crate::veil::{Gaussian, Geometry, Kernel, Mixture, Picture, Plan};
+use crate::veil::{self, Gaussian, Geometry, Kernel, Mixture, Picture, Plan};
 use crate::{Error, Result};
 
 /// The part of the tolerance that the mixture of Gaussians may be off by; the rest is for how it is summed.
@@ -66,29 +66,75 @@ impl Held {
 
     /// How the veil of a function is computed to the tolerance; or, where that will do, to the lowest that can be had, and which
     /// that is.
+    ///
+    /// # Errors
+    /// [`Error::ToleranceBelowFloor`] with a floor at which there is a plan.
     pub fn channels(self, psf: &Psf, pixels: Pixels) -> Result<(Vec<Channel>, f64)> {
-        // A looser mixture has a floor of its own.
-        const TRIES: u32 = 4;
-        const MORE: f64 = 1.05;
-        let mut tolerance = self.asked;
-        for _ in 0..TRIES {
-            match channels(psf, pixels, tolerance) {
-                Err(Error::ToleranceBelowFloor { floor, .. }) if self.least && MORE * floor < 1.0 => {
-                    tolerance = MORE * floor.max(tolerance);
-                }
-                planned => return Ok((planned?, tolerance)),
-            }
+        let Self { asked, least } = self;
+        match channels(psf, pixels, asked) {
+            Ok(planned) => Ok((planned, asked)),
+            Err(Refusal { error, from: None }) => Err(error),
+            Err(Refusal { error, from: Some(from) }) => match lowest(psf, pixels, from.max(asked)) {
+                Some(planned) if least => Ok(planned),
+                Some((_, floor)) => Err(Error::ToleranceBelowFloor { asked, floor }),
+                None => Err(error),
+            },
         }
-        channels(psf, pixels, tolerance).map(|planned| (planned, tolerance))
     }
 }
 
+/// Why there is no plan, and from which tolerance on there may be one.
+struct Refusal {
+    error: Error,
+    from: Option<f64>,
+}
+
+impl From<Error> for Refusal {
+    fn from(error: Error) -> Self {
+        Self { error, from: None }
+    }
+}
+
+impl From<veil::Error> for Refusal {
+    fn from(error: veil::Error) -> Self {
+        let from = match error {
+            veil::Error::OutOfReach { best, .. } => Some(best),
+            veil::Error::Core { asked, .. } => Some(asked),
+            _ => None,
+        };
+        Self { error: failed(error), from }
+    }
+}
+
+/// The lowest tolerance above one at which there is a plan, in steps that grow: a looser mixture has a floor of its own.
+fn lowest(psf: &Psf, pixels: Pixels, above: f64) -> Option<(Vec<Channel>, f64)> {
+    const LOOSEST: f64 = 0.5;
+    const GROWTH: f64 = 1.1;
+    let (mut tolerance, mut step) = (above, 1.02);
+    loop {
+        tolerance = in_two_digits(tolerance * step);
+        if tolerance > LOOSEST {
+            return None;
+        }
+        if let Ok(planned) = channels(psf, pixels, tolerance) {
+            return Some((planned, tolerance));
+        }
+        step *= GROWTH;
+    }
+}
+
+/// The next number of two digits, as it is told.
+fn in_two_digits(value: f64) -> f64 {
+    let unit = 10f64.powi(value.log10().floor() as i32 - 1);
+    (value / unit).ceil() * unit
+}
+
 /// How the veil of each channel is computed, and what it is to be: one plan for all of them, or one each.
-fn channels(psf: &Psf, pixels: Pixels, tolerance: f64) -> Result<Vec<Channel>> {
+fn channels(psf: &Psf, pixels: Pixels, tolerance: f64) -> Result<Vec<Channel>, Refusal> {
     let Pixels { geometry, size, border } = pixels;
     if let Some((kernel, times)) = psf.picture() {
         let picture = picture(kernel, times)?;
-        let plan = Plan::for_picture(&picture, size, border, tolerance).map_err(failed)?;
+        let plan = Plan::for_picture(&picture, size, border, tolerance)?;
         return Ok(vec![(plan, Definition::Picture(picture))]);
     }
     let plan = |kernel: Kernel| {
@@ -98,7 +144,7 @@ fn channels(psf: &Psf, pixels: Pixels, tolerance: f64) -> Result<Vec<Channel>> {
         } else {
             Plan::new(geometry, &kernel, size, border, tolerance)
         };
-        Ok((plan.map_err(failed)?, Definition::Radial(kernel)))
+        Ok((plan?, Definition::Radial(kernel)))
     };
     let of_mixture = (OF_MIXTURE * tolerance).max(TOLERANCES[0]);
     kernels(psf, pixels, of_mixture)?.into_iter().map(plan).collect()
@@ -112,7 +158,8 @@ fn channels(psf: &Psf, pixels: Pixels, tolerance: f64) -> Result<Vec<Channel>> {
 pub(crate) fn plan_of(veil: &Wanted, frame: &Frame, view: Option<&View>, tolerance: f64) -> Result<Plan> {
     let geometry = veil.geometry(frame, view).map_err(told)?;
     let size = [frame.width as usize, frame.height as usize];
-    let mut channels = channels(veil.psf(), Pixels { geometry: &geometry, size, border: veil.border }, tolerance)?;
+    let mut channels = channels(veil.psf(), Pixels { geometry: &geometry, size, border: veil.border }, tolerance)
+        .map_err(|refusal| refusal.error)?;
     Ok(channels.swap_remove(0).0)
 }
 
@@ -170,4 +217,30 @@ fn picture(kernel: &psf::Kernel, times: f64) -> Result<Picture> {
     Picture::new([kernel.columns(), kernel.rows()], [column, row], kernel.pixels().to_vec())
         .and_then(|picture| picture.times(times))
         .map_err(failed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::psf::{Luminance, Observer};
+
+    /// A tolerance that is named is one that can be had, and above what was refused, as it is printed.
+    #[test]
+    fn a_floor_that_is_named_can_be_had() {
+        let cie = Psf::cie(Observer::new(25.0, 0.5).unwrap());
+        let spencer = Psf::spencer(Luminance::Photopic);
+        for (psf, fov, size, asked) in [(&cie, 50.0, [60, 40], 1e-8), (&spencer, 60.0, [100, 90], 1e-3)] {
+            let geometry = Geometry::rectilinear(fov, size[0]);
+            let pixels = Pixels { geometry: &geometry, size, border: Border::None };
+            let refused = Held { asked, least: false }.channels(psf, pixels).map(|(_, tolerance)| tolerance);
+            let Err(Error::ToleranceBelowFloor { floor, .. }) = refused else { panic!("{fov}: {refused:?}") };
+            let printed: f64 = format!("{floor:.1e}").parse().unwrap();
+            assert!(floor > asked && (printed / floor - 1.0).abs() < 1e-9, "{fov}: {floor:e}");
+            let (planned, held) = Held { asked: floor, least: false }.channels(psf, pixels).unwrap();
+            assert!(planned[0].0.predicted().bound <= floor && held == floor, "{fov}: {floor:e}");
+            let (_, least) = Held { asked, least: true }.channels(psf, pixels).unwrap();
+            assert_eq!(least, floor);
+        }
+        assert_eq!([1.01e-3, 1e-3, 0.099_9].map(in_two_digits), [1.1e-3, 1e-3, 0.1]);
+    }
 }

@@ -104,7 +104,7 @@ mod tests {
     fn the_cheaper_is_taken_of_what_can_sum() {
         let flat = Geometry::Planar { pitch: 1.0, solid_angle: 1.0 };
         let built_in = CostModel::default();
-        let card = CostModel { veil_tap: 0.02, veil_pixel: 1.0, pass: 10.0, ..built_in };
+        let card = CostModel { veil_tap: 0.002, veil_pixel: 0.1, pass: 1.0, ..built_in };
         let channels = [planned(flat, &[[2.0, 1.0], [9.0, 0.1]])];
         assert_eq!(cheaper(&channels, 1e-2, &built_in), Processor::Cpu);
         assert_eq!(cheaper(&channels, 1e-2, &card), Processor::Gl);

@@ -2,7 +2,9 @@
 
 use std::time::Instant;
 
-use super::{Prepared, Stages, brightest, computed, failed, looked_at, measured, predicted, prepared, terms, told};
+use super::{
+    Prepared, Stages, brightest, computed, failed, looked_at, measured, predicted, prepared, summed_by, terms, told,
+};
 use crate::certificate::Verify;
 use crate::frame::Frame;
 use crate::look::{Look, Veil as Wanted};
@@ -15,6 +17,8 @@ use crate::{Error, Result, veil};
 pub(crate) struct Trial {
     /// Gaussians of the mixture.
     pub terms: usize,
+    /// How it is summed, in a word.
+    pub summed_by: String,
     /// The plan's bound, relative to the local veil.
     pub predicted: f64,
     /// The largest error that was found, relative to it.
@@ -59,12 +63,14 @@ pub(crate) fn trials(
     let mut pixels = looked_at(seat.stored, brightest(&stored), Verify::Sample);
     pixels.iter_mut().for_each(|pixel| *pixel = seat.seen(*pixel));
     let mut trial = |plan: Prepared| {
-        let Prepared { channels, asked, .. } = plan;
+        let Prepared { channels, .. } = plan;
         let veil = computed(&channels, &sources)?;
+        let bound = predicted(&channels).bound;
         Ok(Trial {
             terms: terms(&channels),
-            predicted: predicted(&channels).bound,
-            measured: measured(&channels, &sources, &seat.geometry, wanted.border, &veil, &pixels, asked)?,
+            summed_by: summed_by(&channels),
+            predicted: bound,
+            measured: measured(&channels, &sources, &seat.geometry, wanted.border, &veil, &pixels, bound)?,
             times: times.next().unwrap_or_default().into_iter().collect(),
         })
     };

@@ -19,7 +19,7 @@ use crate::{Result, target};
 /// `apply --veil` computes it, with their error; draws and writes all of that.
 ///
 /// cie, cie135, spencer and stiles-holladay are the human eye's, in degrees and per steradian; the others are in the
-/// look's unit, half picture heights, and per square of it. cie keeps its value at 0.1 degrees inside of that, and
+/// look's unit, and per square of it. cie keeps its value at 0.1 degrees inside of that, and
 /// stiles-holladay that at 1 degree; spencer is without the ring, whose place depends on the wavelength.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
@@ -31,12 +31,12 @@ pub struct Args {
     #[command(flatten)]
     psf: PsfArgs,
 
-    /// The angles or radii [default: 0.1 to 100 degrees, from 0.01 for cie135 and spencer; 0.001 to 2 half picture heights]
-    #[arg(long, value_name = "FROM,TO", value_parser = range)]
+    /// The angles or radii [default: 0.1 to 100 degrees, from 0.01 for cie135 and spencer; 0.001 to 2 of the look's unit]
+    #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true, value_parser = range)]
     range: Option<Range>,
 
     /// How close the Gaussians are to come, relatively, from 1e-6 to 0.5
-    #[arg(long, value_name = "E", default_value_t = 1e-2, value_parser = positive)]
+    #[arg(long, value_name = "E", default_value_t = 1e-2, allow_negative_numbers = true, value_parser = positive)]
     tolerance: f64,
 
     /// Draw profile, error of the Gaussians, encircled energy and transform: .svg or .png

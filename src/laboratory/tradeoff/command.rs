@@ -100,7 +100,7 @@ pub fn run(args: &Args) -> Result<()> {
     look.veil = None;
     let scene = look.gather(&photo, &photo.frame);
     let name = name(&args.photo);
-    let subject = Subject::new(&name, &photo, &scene.ghosts)?.with_veil(&veiled);
+    let subject = Subject::new(&name, &photo, &scene.ghosts, &veiled)?;
     tradeoff::check(&args.output, args.force)?;
     let device = Device::open(args.backend.backends())?;
     let known = args.calibration.known(Some(device.info()));
@@ -131,6 +131,42 @@ fn name(path: &Path) -> String {
 }
 
 fn summary(out: &mut dyn Write, results: &Results, index: &Path) -> io::Result<()> {
+    if results.ghosts > 0 {
+        of_ghosts(out, results)?;
+    }
+    of_veil(out, results)?;
+    writeln!(out, "wrote {}", index.display())
+}
+
+/// The veil at each tolerance; nothing without one.
+fn of_veil(out: &mut dyn Write, results: &Results) -> io::Result<()> {
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING);
+    table.set_header(["tolerance", "summed by", "predicted", "measured", "ms"]);
+    let (mut refusals, points) = (Vec::new(), results.of_veil());
+    if points.is_empty() {
+        return Ok(());
+    }
+    for point in points {
+        let asked = point.asked.map(exponent).unwrap_or_default();
+        if let Some(reason) = &point.refused {
+            refusals.push(format!("{asked}: {reason}"));
+            continue;
+        }
+        let error = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.1e}"));
+        let [predicted, measured] = [point.predicted, point.measured].map(error);
+        let (by, ms) = (point.summed_by.clone().unwrap_or_default(), point.ms.map_or("-".to_owned(), short));
+        table.add_row([asked, by, predicted, measured, ms]);
+    }
+    table.column_iter_mut().skip(2).for_each(|column| column.set_cell_alignment(CellAlignment::Right));
+    let [width, height] = results.swept;
+    writeln!(out, "The veil at {width} × {height}, by its own brightness at each pixel, summed on the processor")?;
+    writeln!(out, "{}", table.trim_fmt())?;
+    refusals.iter().try_for_each(|refusal| writeln!(out, "{refusal}"))
+}
+
+/// The planner's choices for the ghosts, and what to use.
+fn of_ghosts(out: &mut dyn Write, results: &Results) -> io::Result<()> {
     let mut table = Table::new();
     table.load_style(presets::NOTHING);
     table.set_header(["tolerance", "evaluator", "degree", "predicted", "measured", "ΔE2000", "ms"]);
@@ -157,8 +193,8 @@ fn summary(out: &mut dyn Write, results: &Results, index: &Path) -> io::Result<(
     )?;
     writeln!(out, "{}", table.trim_fmt())?;
     refusals.iter().try_for_each(|refusal| writeln!(out, "{refusal}"))?;
-    if let Some(recommendation) = &results.recommendation {
-        writeln!(out, "{}", recommendation.sentence())?;
+    match &results.recommendation {
+        Some(recommendation) => writeln!(out, "{}", recommendation.sentence()),
+        None => Ok(()),
     }
-    writeln!(out, "wrote {}", index.display())
 }

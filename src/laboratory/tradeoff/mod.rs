@@ -46,22 +46,19 @@ pub struct Subject<'a> {
 }
 
 impl<'a> Subject<'a> {
-    /// A photo, by a name for people, and what glares in it.
+    /// A photo, by a name for people, and what glares in it: ghosts, and the veil of a look that has one, which says itself what the
+    /// photo spans.
     ///
     /// # Errors
     /// [`Error::Usage`] where nothing glares.
-    pub fn new(name: &'a str, photo: &'a Photo, ghosts: &'a [Ghost]) -> Result<Self> {
-        if ghosts.is_empty() {
+    pub fn new(name: &'a str, photo: &'a Photo, ghosts: &'a [Ghost], look: &'a Look) -> Result<Self> {
+        let veil = look.veil.is_some().then_some(look);
+        if ghosts.is_empty() && veil.is_none() {
             return Err(Error::Usage(format!(
                 "nothing glares in {name}: --lights or --scene can say what does, --threshold find fainter lights"
             )));
         }
-        Ok(Self { name, photo, ghosts, veil: None })
-    }
-
-    /// The same with the veil of a look, which says itself what the photo spans.
-    pub fn with_veil(self, look: &'a Look) -> Self {
-        Self { veil: look.veil.is_some().then_some(look), ..self }
+        Ok(Self { name, photo, ghosts, veil })
     }
 }
 
@@ -90,7 +87,7 @@ pub struct Results {
     pub device: Info,
     /// Whether the planner reckoned with costs that were measured on this machine.
     pub calibrated: bool,
-    /// What to use; none where nothing was exact enough.
+    /// What to use for ghosts; none where nothing was exact enough, or where there are none.
     pub recommendation: Option<Recommendation>,
     /// Every setting that was tried, sweep by sweep.
     pub points: Vec<Point>,
@@ -104,14 +101,14 @@ pub struct Results {
     pub phase_period: f64,
     /// Turns of the highest harmonic that the planner takes, at the picture's border; none where it takes none.
     pub phase_reach: Option<f64>,
-    /// The phases' errors, a curve for each way to compute them.
+    /// The phases' errors, a curve for each way to compute them; none without ghosts.
     pub phases: Vec<PhaseCurve>,
     #[serde(skip)]
     looks: Looks,
 }
 
 /// The sweeps by what they are called while they run, and roughly the part of the whole time that each takes.
-const STAGES: [(&str, f64); 8] = [
+const STAGES: &[(&str, f64)] = &[
     ("tolerances", 0.22),
     ("degrees", 0.12),
     ("lattices", 0.1),
@@ -121,6 +118,24 @@ const STAGES: [(&str, f64); 8] = [
     ("the veil", 0.04),
     ("pictures", 0.05),
 ];
+/// Those of a photo without ghosts.
+const OF_VEIL: &[(&str, f64)] = &[("the veil", 1.0)];
+
+/// Runs a stage, which is told whom to tell how much of it is done.
+type Stage<'a> = &'a mut dyn FnMut(&mut dyn FnMut(Watch<'_>) -> Result<()>) -> Result<()>;
+
+/// The sweeps of ghosts.
+fn of_ghosts(study: &mut Study<'_>, stage: Stage<'_>) -> Result<Vec<Point>> {
+    let mut points = Vec::new();
+    stage(&mut |watch| sweeps::tolerance(study, watch).map(|found| points.extend(found)))?;
+    stage(&mut |watch| sweeps::degree(study, watch).map(|found| points.extend(found)))?;
+    stage(&mut |watch| sweeps::oversampling(study, watch).map(|found| points.extend(found)))?;
+    stage(&mut |watch| sweeps::storage(study, watch).map(|found| points.extend(found)))?;
+    stage(&mut |watch| sweeps::ghosts(study, watch).map(|found| points.extend(found)))?;
+    let tolerance = front::choice(&points).and_then(|point| point.asked).unwrap_or(1e-3);
+    stage(&mut |watch| sweeps::size(study, tolerance, watch).map(|found| points.extend(found)))?;
+    Ok(points)
+}
 
 /// Runs all sweeps, with plans by what was measured of this machine's costs, or else by the built-in ones; `watch` hears
 /// what is going on, and how much of all is done, from 0 to 1.
@@ -135,7 +150,8 @@ pub fn measure(
     watch: &mut dyn FnMut(&'static str, f64),
 ) -> Result<Results> {
     let mut study = Study::new(subject, device, costs.unwrap_or_default(), quick)?;
-    let mut stages = STAGES.iter().scan(0.0, |before, &(name, part)| {
+    let has_ghosts = !subject.ghosts.is_empty();
+    let mut stages = if has_ghosts { STAGES } else { OF_VEIL }.iter().scan(0.0, |before, &(name, part)| {
         *before += part;
         Some((name, *before - part, part))
     });
@@ -144,18 +160,13 @@ pub fn measure(
         watch(name, before);
         run(&mut |done: f64| watch(name, before + part * done))
     };
-    let mut points = Vec::new();
-    stage(&mut |watch| sweeps::tolerance(&mut study, watch).map(|found| points.extend(found)))?;
-    stage(&mut |watch| sweeps::degree(&mut study, watch).map(|found| points.extend(found)))?;
-    stage(&mut |watch| sweeps::oversampling(&mut study, watch).map(|found| points.extend(found)))?;
-    stage(&mut |watch| sweeps::storage(&mut study, watch).map(|found| points.extend(found)))?;
-    stage(&mut |watch| sweeps::ghosts(&mut study, watch).map(|found| points.extend(found)))?;
-    let tolerance = front::choice(&points).and_then(|point| point.asked).unwrap_or(1e-3);
-    stage(&mut |watch| sweeps::size(&mut study, tolerance, watch).map(|found| points.extend(found)))?;
+    let mut points = if has_ghosts { of_ghosts(&mut study, &mut stage)? } else { Vec::new() };
     stage(&mut |_| sweeps::veil(&study).map(|found| points.extend(found)))?;
     let front = front::front(&points, Sweep::Tolerance);
     let mut looks = Looks::default();
-    stage(&mut |watch| looks::looks(&mut study, &points, &front, watch).map(|found| looks = found))?;
+    if has_ghosts {
+        stage(&mut |watch| looks::looks(&mut study, &points, &front, watch).map(|found| looks = found))?;
+    }
     let mut recommendation = front::recommend(&points);
     if let Some(found) = &mut recommendation
         && let Some(measured) = study.everywhere(found.tolerance, [found.width, found.height])?
@@ -183,7 +194,7 @@ pub fn measure(
         phase_reach: tight
             .map(|(_, plan)| f64::from(plan.degree()[0]) * 0.5 * wide(&study) / period)
             .filter(|&n| n >= 1.0),
-        phases: phases::curves(study.photo.frame, period),
+        phases: if has_ghosts { phases::curves(study.photo.frame, period) } else { Vec::new() },
         phase_period: period,
         veil_front: front::front(&points, Sweep::Veil),
         points,

@@ -31,12 +31,17 @@ pub(super) fn page(results: &Results, plots: &[Plot], files: &Files) -> String {
     let mut text = head(&title, GENERATOR) + STYLE;
     let _ = writeln!(text, "<h1>{}</h1>", escaped(&title));
     text.push_str(&subject(results));
-    text.push_str(&headline(results));
-    text.push_str("<h2>What the planner chooses</h2>\n");
-    text.push_str(&choices(results));
-    text.push_str(&glossary());
-    text.push_str("<h2>What it looks like</h2>\n");
-    text.push_str(&pictures(results, files));
+    if results.ghosts > 0 {
+        text.push_str(&headline(results));
+        text.push_str("<h2>What the planner chooses</h2>\n");
+        text.push_str(&choices(results));
+        text.push_str(&glossary());
+    }
+    text.push_str(&veil(results));
+    if results.ghosts > 0 {
+        text.push_str("<h2>What it looks like</h2>\n");
+        text.push_str(&pictures(results, files));
+    }
     text.push_str("<h2>What was measured</h2>\n");
     for (plot, files) in plots.iter().zip(&files.plots) {
         text.push_str(&figure(plot, files));
@@ -116,6 +121,37 @@ fn choices(results: &Results) -> String {
     text + "</table></div>\n"
 }
 
+/// The veil at each tolerance; nothing without one.
+fn veil(results: &Results) -> String {
+    let points = results.of_veil();
+    if points.is_empty() {
+        return String::new();
+    }
+    let mut text = String::from(
+        "<h2>The veil</h2>\n<div class=\"wide\"><table>\n<tr><th class=\"number\">tolerance</th><th>summed by</th>\
+         <th class=\"number\">predicted</th><th class=\"number\">measured</th><th class=\"number\">ms</th><th>least to most</th></tr>\n",
+    );
+    for point in points {
+        let asked = point.asked.map(exponent).unwrap_or_default();
+        if let Some(reason) = &point.refused {
+            let _ = writeln!(text, "<tr>{}<td colspan=\"5\" class=\"soft\">{}</td></tr>", cell(&asked), shown(reason));
+            continue;
+        }
+        let error = |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.1e}"));
+        let number = |value: Option<f64>| value.map_or("–".to_owned(), short);
+        let cells = [
+            asked,
+            point.summed_by.clone().unwrap_or_default(),
+            error(point.predicted),
+            error(point.measured),
+            number(point.ms),
+            format!("{} to {}", number(point.least_ms), number(point.most_ms)),
+        ];
+        let _ = writeln!(text, "<tr>{}</tr>", cells.iter().map(|value| cell(value)).collect::<String>());
+    }
+    text + "</table></div>\n"
+}
+
 /// What would have been faster than a planner's choice; a dash where nothing was.
 fn other_fastest(results: &Results, point: &Point) -> String {
     match fastest(&results.points, point) {
@@ -187,6 +223,11 @@ fn figure(Plot { stem, caption, chart }: &Plot, [png, svg, csv]: &[String; 3]) -
 }
 
 impl Results {
+    /// The veil at each tolerance, the coarsest first; with those that cannot be had. Empty without a veil.
+    pub fn of_veil(&self) -> Vec<&Point> {
+        self.points.iter().filter(|point| point.sweep == Sweep::Veil).collect()
+    }
+
     /// The planner's own choices over tolerances, the coarsest first; with those that it refused.
     pub fn choices(&self) -> Vec<&Point> {
         let own = self.points.iter().filter(|point| point.sweep == Sweep::Tolerance && point.planner);

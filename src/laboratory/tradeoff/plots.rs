@@ -191,6 +191,7 @@ fn size(results: &Results) -> Option<Plot> {
 }
 
 fn phases(results: &Results) -> Option<Plot> {
+    results.phases.first()?;
     let mut chart = logarithmic(
         "Stability of phases: cos(n·2πx/T) by what computes it",
         "n·x/T at the picture’s border, turns",

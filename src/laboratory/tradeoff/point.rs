@@ -66,8 +66,10 @@ pub struct Point {
     pub degree_x: Option<u32>,
     /// The same in y.
     pub degree_y: Option<u32>,
-    /// How many terms of the series are kept.
+    /// How many terms of the series are kept; of a veil, the Gaussians that stand for its function.
     pub terms: Option<usize>,
+    /// How a veil is summed: by a `pyramid`, on the `sphere`, by a `transform` or by a `sum`.
+    pub summed_by: Option<String>,
     /// Nodes a half wave of the highest harmonic, the fewer of x and y.
     pub oversampling: Option<f64>,
     /// What the spectrum is kept as.
@@ -124,6 +126,7 @@ impl Point {
     pub(super) fn of_veil(frame: Frame, asked: f64, trial: &Trial) -> Self {
         Self {
             terms: Some(trial.terms),
+            summed_by: Some(trial.summed_by.clone()),
             predicted: Some(trial.predicted),
             measured: Some(trial.measured),
             ms: Some(trial.times.median()),
@@ -147,6 +150,7 @@ impl Point {
             degree_x: None,
             degree_y: None,
             terms: None,
+            summed_by: None,
             oversampling: None,
             storage: Storage::Float,
             predicted: None,

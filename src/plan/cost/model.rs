@@ -87,8 +87,8 @@ impl Default for CostModel {
             strip_double: 50.0,
             interpolation_double: 30.0,
             veil_add: built_in_veil_add(),
-            veil_tap: 3.0,
-            veil_pixel: 30.0,
+            veil_tap: 1.5,
+            veil_pixel: 27.0,
             pass: 50_000.0,
         }
     }

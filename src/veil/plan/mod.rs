@@ -129,6 +129,17 @@ pub enum Method {
     },
 }
 
+impl std::fmt::Display for Method {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Pyramid => "pyramid",
+            Self::Sphere => "sphere",
+            Self::Sum => "sum",
+            Self::Transform { .. } => "transform",
+        })
+    }
+}
+
 /// On a plane.
 #[derive(Debug, Clone)]
 pub(super) struct Planar {

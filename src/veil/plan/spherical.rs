@@ -76,6 +76,9 @@ impl Plan {
             Err(Error::OutOfReach { .. } | Error::Core { .. }) if pixels <= SMALL && tolerance > DIRECT => {
                 return Ok(Self::direct(geometry, kernel, size));
             }
+            Err(Error::OutOfReach { asked, .. } | Error::Core { asked, .. }) if pixels <= SMALL => {
+                return Err(Error::OutOfReach { asked, best: DIRECT, distance: 0.0 });
+            }
             Err(refused @ (Error::OutOfReach { .. } | Error::Core { .. })) => {
                 let tree = Tree::new(&task).ok_or(refused)?;
                 let promised = [tree.bound, sphere::TREE_ROUNDING, tree.operations];

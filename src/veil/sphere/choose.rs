@@ -8,7 +8,7 @@
 use super::Sphere;
 use super::camera::{Camera, Point};
 use super::fit::{error, fit};
-use super::measure::{BETWEEN, beyond, bound};
+use super::measure::{BETWEEN, beyond, far, near as near_error};
 use super::model::{Layout, Mixture, Model, Term, Wanted};
 use super::tiles::{FARTHEST, Slopes, Tiles, middle};
 use crate::veil::error::Error;
@@ -277,20 +277,22 @@ impl Task<'_> {
         let (roundings, unit) = unit(near);
         let limit = (share - unit - model.drift[0]) / BETWEEN;
         let wanted = Wanted { profile: self.profile, near };
+        let all = |worst: f64| BETWEEN * worst + unit + model.drift[0];
+        let far = far(&model, &wanted);
+        if far.0 > limit {
+            return Err(Fails::Tolerance(all(far.0), far.1));
+        }
         let mut closest = (f64::INFINITY, 0.0);
         let fine = TILES.into_iter().filter(|tile| self.tile_suffices(*tile));
         for tile in fine {
-            let (worst, distance) = bound(&model, &wanted, tile, limit);
-            let bound = BETWEEN * worst + unit + model.drift[0];
+            let (worst, distance) = near_error(&model, &wanted, tile, limit);
+            let bound = all(worst.max(far.0));
             if worst <= limit {
                 let operations = self.operations(mixture, layout, near, tile);
                 return Ok(Look { near, tile, bound, unit, roundings, operations, model });
             }
             if bound < closest.0 {
                 closest = (bound, distance);
-            }
-            if distance > self.radius(near)[1] {
-                break;
             }
         }
         Err(Fails::Tolerance(closest.0, closest.1))

@@ -14,6 +14,9 @@ const ROWS: usize = 4;
 /// smallest then.
 const SLOPE_AT: f64 = 0.7;
 
+/// A second order that is more than this share of a tap may be a kink, as where a function is flat up to some angle.
+const CURVED: f64 = 1e-3;
+
 /// Most taps of all kernels together: less than half a gigabyte.
 const MOST_TAPS: usize = 1 << 25;
 
@@ -202,16 +205,18 @@ impl Kernel {
     }
 }
 
-/// Where a tile's kernel is looked at: in the middle, and on both sides of it along columns and rows.
+/// Where a tile's kernel is looked at: in the middle, on both sides of it along columns and rows, and in the corners.
 pub(super) struct Slopes {
     middle: [f64; 2],
     /// From the middle, in pixels.
     steps: [f64; 2],
+    corner: [f64; 2],
 }
 
 impl Slopes {
     pub fn new(middle: [f64; 2], size: [usize; 2]) -> Self {
-        Self { middle, steps: size.map(|size| SLOPE_AT * 0.5 * (size as f64 - 1.0)) }
+        let corner = size.map(|size| 0.5 * (size as f64 - 1.0));
+        Self { middle, steps: corner.map(|side| SLOPE_AT * side), corner }
     }
 
     /// The small kernel's value for a source so many columns and rows away.
@@ -227,15 +232,28 @@ impl Slopes {
             value(&source, &camera.point(target[0], target[1]))
         };
         let middle = at(0.0, 0.0);
-        let mut linear = [middle, 0.0, 0.0];
+        let (mut linear, mut curved) = ([middle, 0.0, 0.0], 0.0);
         for side in [0, 1] {
             let step = self.steps[side];
             if step > 0.0 {
                 let [before, after] = [-step, step].map(|step| if side == 0 { at(step, 0.0) } else { at(0.0, step) });
                 linear[side + 1] = (after - before) / (2.0 * step);
                 // Half of what is curved, so that it is as much too high as too low.
-                linear[0] += 0.5 * (0.5 * (before + after) - middle);
+                let half = 0.5 * (0.5 * (before + after) - middle);
+                linear[0] += half;
+                curved += half.abs();
             }
+        }
+        if curved > CURVED * middle.abs() {
+            let off = |share: f64, [x, y]: [f64; 2]| {
+                let [x, y] = [share * x * self.corner[0], share * y * self.corner[1]];
+                at(x, y) - linear[0] - x * linear[1] - y * linear[2]
+            };
+            let corners = [[-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]];
+            let all = [0.5, 1.0].into_iter().flat_map(|share| corners.map(|corner| off(share, corner)));
+            let first = middle - linear[0];
+            let [low, high] = all.fold([first; 2], |[low, high], off| [low.min(off), high.max(off)]);
+            linear[0] += 0.5 * (low + high);
         }
         linear
     }

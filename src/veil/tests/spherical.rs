@@ -4,6 +4,7 @@ use super::kernels::{cie, spencer};
 use super::photos::{Dice, photo};
 use super::{long, worst};
 use crate::veil::reference::Window;
+use crate::veil::sphere::angle;
 use crate::veil::{Border, Error, Geometry, Kernel, Photo, Plan};
 
 /// Kernels, fields, projections and tolerances; with lights up to 10⁸ over black or noise.
@@ -55,6 +56,34 @@ fn check(
     assert!(error <= predicted.bound, "{geometry:?} {size:?}: {error:e}, {place}, {predicted:?}");
     assert!(predicted.bound <= tolerance, "{predicted:?}");
     plan
+}
+
+/// One light at an edge or in a corner, and nothing else: what falls at the far end of the picture comes of one pair of pixels, where
+/// depths differ most, and of pairs that are 180 degrees apart.
+#[test]
+fn lone_lights_at_the_edges_are_within_the_bound_everywhere() {
+    let cases = [
+        (Geometry::fisheye(89.0, 169), [169, 43], &cie(true), [168, 42]),
+        (Geometry::rectilinear(61.0, 193), [193, 34], &spencer(true), [0, 17]),
+        (Geometry::rectilinear(82.0, 187), [187, 42], &cie(true), [0, 0]),
+        (Geometry::rectilinear(50.0, 300), [300, 168], &cie(true), [299, 47]),
+        (Geometry::fisheye(179.0, 100), [100, 60], &cie(true), [0, 0]),
+    ];
+    for (geometry, size, kernel, [x, y]) in cases {
+        let mut values = vec![0.0; 3 * size[0] * size[1]];
+        values[3 * (y * size[0] + x) + 1] = 1.0;
+        let photo = Photo::rgb(&values, size).expect("a photo");
+        let plan = Plan::new(&geometry, kernel, size, Border::None, 1e-2).expect("a plan");
+        let veil = plan.evaluate(&photo).expect("a veil");
+        let camera = geometry.camera(size).expect("a camera");
+        let point = |x: usize, y: usize| camera.point(x as f64, y as f64);
+        let (here, mut error) = (point(x, y), 0.0f64);
+        for at in (0..size[0] * size[1]).filter(|at| *at != y * size[0] + x) {
+            let wanted = here.solid_angle * kernel.at(angle(here.chord(&point(at % size[0], at / size[0]))));
+            error = error.max((f64::from(veil.planes[1][at]) / wanted - 1.0).abs());
+        }
+        assert!(error <= plan.predicted().bound, "{geometry:?}: {error:e}, {:?}", plan.predicted());
+    }
 }
 
 /// Pictures from a tenth of a degree to 179 have a plan, by transforms, by lattices or by tiles.

@@ -126,7 +126,7 @@ impl App {
         let Some(document) = self.document_mut() else { return };
         document.veil_fault = None;
         if let Err(fault) = document.look.choose_psf_file(name, path) {
-            self.notice(fault.reason);
+            self.notice(fault.in_words());
         }
     }
 

@@ -174,7 +174,7 @@ mod tests {
         let veil = look.veil.as_ref().unwrap();
         assert!((veil.psf().energy() - 0.25).abs() < 1e-9 && veil.tolerance() == 1e-3);
         let gone = look.choose_psf_file(Name::Kernel, &folder.path().join("none.exr")).unwrap_err();
-        assert!(gone.key == "kernel" && gone.reason.contains("none.exr"), "{gone}");
+        assert!(gone.key == "kernel" && gone.in_words().contains("none.exr"), "{gone}");
     }
 
     #[test]

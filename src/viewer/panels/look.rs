@@ -37,8 +37,8 @@ const MIXES: [(Mix, &str, &str); 2] = [
 ];
 
 const UNITS: [(LengthUnit, &str, &str); 4] = [
-    (LengthUnit::Height, "height", "Half the picture's height"),
-    (LengthUnit::ShortSide, "short side", "Half its shorter side, which stays when it is turned by 90°"),
+    (LengthUnit::ShortSide, "short side", "Half the picture's shorter side, which stays when it is turned by 90°"),
+    (LengthUnit::Height, "height", "Half its height, as in files that name no unit"),
     (LengthUnit::Diagonal, "diagonal", "Half its diagonal, which does so, too"),
     (LengthUnit::Degrees, "degrees", "As they are in the picture's middle, by its field of view"),
 ];

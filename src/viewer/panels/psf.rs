@@ -93,7 +93,7 @@ pub fn function(ui: &mut Ui, document: &mut Document) {
         _ if chosen == opened => document.look.veil.clone_from(&document.opened.veil),
         Some(Name::Table) => document.wants_path = Some(Purpose::OpenTable),
         Some(Name::Kernel) => document.wants_path = Some(Purpose::OpenKernel),
-        _ => document.veil_fault = document.look.choose_psf(chosen).err().map(|fault| fault.reason),
+        _ => document.veil_fault = document.look.choose_psf(chosen).err().map(|fault| fault.in_words()),
     }
 }
 

@@ -95,7 +95,7 @@ fn settings(ui: &mut Ui, document: &mut Document, veil: &Veil) {
         document.veil_fault = None;
     }
     if now != before {
-        document.veil_fault = document.look.change_veil(&now).err().map(|fault| fault.reason);
+        document.veil_fault = document.look.change_veil(&now).err().map(|fault| fault.in_words());
     }
 }
 
@@ -171,7 +171,7 @@ fn figures(ui: &mut Ui, look: &Look, stage: &Stage) {
 
 /// Where the light is.
 fn ledger(ui: &mut Ui, ledger: &Ledger) {
-    let Ledger { light, kept, inside, lost } = *ledger;
+    let Ledger { light, kept, inside, lost, gained } = *ledger;
     Grid::new("ledger").num_columns(4).striped(true).show(ui, |ui| {
         ui.strong("light").on_hover_text("What becomes of the photo's light, as shares of it");
         ["red", "green", "blue"].into_iter().for_each(|colour| _ = ui.label(colour));
@@ -179,7 +179,12 @@ fn ledger(ui: &mut Ui, ledger: &Ledger) {
         let rows = [
             ("kept", "By the pixels that it was of", kept),
             ("in the picture", "Scattered over other pixels", inside),
-            ("out of it", "Scattered beyond the edges", lost),
+            ("out of it", "Scattered beyond the edges", lost.map(|lost| lost.max(0.0))),
+            (
+                "more",
+                "That there was not before: of a veil that is added, or by the definition, of coarse pixels",
+                gained,
+            ),
         ];
         for (name, about, parts) in rows {
             ui.label(name).on_hover_text(about);

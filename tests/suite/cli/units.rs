@@ -86,7 +86,8 @@ fn a_photo_that_is_turned_or_cut_keeps_its_halo() {
             }
         }
         if !scene.contains("look") {
-            let (lying, upright) = (place.glare_of(&whole, scene), place.glare_of(&turned(&whole), scene));
+            let by_height = format!("{scene} --unit height");
+            let (lying, upright) = (place.glare_of(&whole, &by_height), place.glare_of(&turned(&whole), &by_height));
             assert!(difference(&turned(&lying), &upright) > 0.1, "half the height is another when it is turned");
         }
     }
@@ -136,9 +137,9 @@ fn a_unit_is_a_scale_of_all_lengths() {
 fn lights_say_their_unit_and_are_taken_in_no_other() {
     let place = Workplace::new();
     place.write("in.exr", &turned(&lamp(WIDTH, HEIGHT)));
-    let said = place.vglare(&["lights", "in.exr", "--json", "--unit", "short-side"]).succeeded().stdout();
+    let said = place.vglare(&["lights", "in.exr", "--json"]).succeeded().stdout();
     place.text("lights.json", &said);
-    let by_height = place.json(&["lights", "in.exr", "--json"]);
+    let by_height = place.json(&["lights", "in.exr", "--json", "--unit", "height"]);
     let by_side = place.read_json("lights.json");
     assert_eq!((&by_side["unit"], &by_height["unit"]), (&json!("short-side"), &json!("height")));
     let ratio = |key: &str| {
@@ -150,9 +151,45 @@ fn lights_say_their_unit_and_are_taken_in_no_other() {
     };
     // Half the height is half as long again as half the shorter side.
     assert!((ratio("size") - 1.5).abs() < 1e-9 && (ratio("flux") - 2.25).abs() < 1e-9);
-    let line = ["apply", "in.exr", "--glare", "glare.exr", "--force", "--lights", "lights.json"];
-    place.vglare(&line).failed(1, &["lights.json", "short-side", "height"]);
-    place.vglare(&[&line[..], &["--unit", "short-side"]].concat()).succeeded();
+    let line =
+        ["apply", "in.exr", "--glare", "glare.exr", "--force", "--report", "report.json", "--lights", "lights.json"];
+    place.text("scene.toml", "[look]\nstrength = 1\n");
+    for other in [["--unit", "height"], ["--scene", "scene.toml"]] {
+        place.vglare(&[&line[..], &other].concat()).failed(1, &["lights.json", "short-side", "height"]);
+    }
+    let unit = |options: &[&str]| {
+        place.vglare(&[&line[..], options].concat()).succeeded();
+        place.read_json("report.json")["unit"]["name"].clone()
+    };
+    // What names its unit gives it to a look that nothing else says it of.
+    assert_eq!([unit(&[]), unit(&["--unit", "short-side"])], [json!("short-side"), json!("short-side")]);
+    // Lights that name none are in half picture heights, as ever.
+    place.text("lights.toml", "[[light]]\nposition = [0.1, 0.2]\nflux = [1, 1, 1]\n");
+    let line = ["apply", "in.exr", "--glare", "glare.exr", "--force", "--report", "report.json"];
+    for option in ["--lights", "--add-lights"] {
+        place.vglare(&[&line[..], &[option, "lights.toml"]].concat()).succeeded();
+        assert_eq!(place.read_json("report.json")["unit"]["name"], json!("height"));
+    }
+    let both = ["--lights", "lights.json", "--add-lights", "lights.toml"];
+    place.vglare(&[&line[..], &both].concat()).failed(1, &["lights.json", "short-side", "height"]);
+}
+
+/// No option says a unit, and no file: a look is the same one when its photo is turned.
+#[test]
+fn a_look_of_no_file_turns_with_its_photo() {
+    let place = Workplace::new();
+    let mut photo = lamp(WIDTH, HEIGHT);
+    photo.pixels[13 * WIDTH + 20] = [80.0, 90.0, 100.0, 1.0];
+    let presets = ["", "--preset eye", "--preset classic-veil", "--lens lens.toml"];
+    place.text("lens.toml", "[[lens_ghost]]\nalong = -0.5\nsize = 0.2\nshare = 0.05\n");
+    for options in presets.map(|preset| format!("{preset} --firefly-limit 0")) {
+        let [lying, upright] = [&photo, &turned(&photo)].map(|photo| place.glare_of(photo, &options));
+        let off = difference(&turned(&lying), &upright);
+        assert!(off < 2e-3, "{options}: {off}");
+        // A photo that lies is as it was, to the last bit, when half its height was the unit.
+        let by_height = place.glare_of(&photo, &format!("{options} --unit height"));
+        assert_eq!(lying.pixels, by_height.pixels, "{options}");
+    }
 }
 
 /// Files that other programs wrote: Pillow, piexif and OpenEXR's own bindings.

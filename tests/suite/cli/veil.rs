@@ -157,7 +157,24 @@ fn what_no_veil_can_be_is_refused_by_name() {
         ("--veil camera --strength 40", ["strength of 40", "all of it"]),
         ("--veil cie --fov 50 --normalize minmax", ["--normalize none", "physical"]),
         ("--veil table --table table.csv", ["--table", "2"]),
-        ("--veil table --table nothing.csv", ["--table", "nothing.csv"]),
+        // Numbers that begin with a minus are numbers, and told by their range.
+        ("--veil cie --fov 50 --age -1", ["--age", "0 to 120"]),
+        ("--veil cie --fov 50 --pigment -0.5", ["--pigment", "0 to 1.2"]),
+        ("--veil cie --fov -50", ["--fov", "0.1 to 179"]),
+        ("--veil abg --abg -1,1e-3,2.5", ["--abg", "-1"]),
+        ("--veil abg --abg 1,-1e-3,2.5", ["--abg", "-0.001"]),
+        ("--veil gaussian --width -0.1 --scatter 0.1", ["--width", "-0.1"]),
+        ("--veil gaussian --width 0.1 --scatter -0.1", ["--scatter", "-0.1"]),
+        ("--veil mixture --widths -0.1,0.2 --scatter 0.1", ["--widths", "-0.1"]),
+        ("--veil mixture --widths 0.1,0.2 --weights -1,2 --scatter 0.1", ["--weights", "-1"]),
+        ("--veil mixture --widths 0.1 --tints -1,0,0 --scatter 0.1", ["--tints", "not negative"]),
+        ("--strength -1", ["--strength", "not negative"]),
+        ("--tint -1,0,0", ["--tint", "not negative"]),
+        ("--size -1", ["--size", "positive"]),
+        ("--tolerance -1e-3", ["--tolerance", "-1e-3"]),
+        ("--merge -1", ["--merge", "not negative"]),
+        ("--degree -1,2", ["--degree", "-1,2"]),
+        ("--veil cie --fov 350 --projection fisheye", ["fisheye", "330"]),
         ("--veil cie --fov 50 --border mirror", ["border", "plane"]),
     ] {
         let args: Vec<&str> = ["apply", "in.exr", "-o", "out.exr"].into_iter().chain(line.split(' ')).collect();
@@ -166,7 +183,63 @@ fn what_no_veil_can_be_is_refused_by_name() {
     for (file, words) in [("bad.toml", "age"), ("odd.toml", "luminance"), ("key.toml", "colour")] {
         place.vglare(&["apply", "in.exr", "-o", "out.exr", "--scene", file]).failed(1, &[file, words]);
     }
+    // A file that cannot be read is one, as a scene or a photo is.
+    std::fs::create_dir(place.path("folder.csv")).unwrap();
+    place.text("text.exr", "this is no picture");
+    let missing = place.vglare(&["apply", "in.exr", "-o", "out.exr", "--scene", "nothing.toml"]);
+    missing.failed(1, &["nothing.toml: cannot be read: No such file"]);
+    for (name, words) in [
+        ("table --table nothing.csv", "nothing.csv: cannot be read: No such file"),
+        ("table --table folder.csv", "folder.csv: cannot be read: it is a folder"),
+        ("kernel --kernel nothing.exr", "nothing.exr: cannot be read: No such file"),
+        ("kernel --kernel text.exr", "text.exr: cannot be read: "),
+    ] {
+        for command in [&["apply", "in.exr", "-o", "out.exr", "--veil"][..], &["psf"]] {
+            let line: Vec<&str> = command.iter().copied().chain(name.split(' ')).collect();
+            let ran = place.vglare(&line);
+            assert!(!ran.stderr().contains("the photo"), "{}", ran.stderr());
+            ran.failed(1, &[words]);
+        }
+    }
     assert!(!place.files().contains(&"out.exr".to_owned()));
+}
+
+#[test]
+fn what_is_wrong_in_a_file_is_told_where_it_stands() {
+    let place = Workplace::new();
+    place.photo("in.exr");
+    for (text, words) in [
+        (
+            "[veil]\npsf = \"cie\"\nage = 60\nprojektion = \"planar\"\n",
+            [
+                "line 4, column 1",
+                "`projektion`",
+                "`psf`, `age`",
+                "`fov`, `projection`, `border`, `tolerance` in `veil`",
+            ],
+        ),
+        ("[look]\nsize = 1\n[veil]\npsf = \"gaussan\"\n", ["line 4, column 7", "`gaussan`", "`gaussian`", "`kernel`"]),
+        ("[veil]\npsf = \"gaussian\"\nwidth = \"x\"\n", ["line 3, column 9", "\"x\"", "f64", "veil.width"]),
+        ("[veil]\nborder = \"mirorr\"\npsf = \"cie\"\n", ["line 2, column 10", "`mirorr`", "`mirror`", "veil.border"]),
+        ("[veil]\npsf = \"cie\"\nage = 200\n", ["line 3, column 7", "0 to 120", "200", "veil.age"]),
+        ("[veil]\npsf = \"cie\"\nfov = 720\n", ["line 3, column 7", "0.1 to 179", "720", "veil.fov"]),
+        ("[veil]\npsf = \"cie\"\ntolerance = 2\n", ["line 3, column 13", "0 and 1", "2", "veil.tolerance"]),
+        ("[veil]\npsf = \"cie\"\nwidth = 0.1\n", ["line 3, column 9", "cie does not take it", "age", "veil.width"]),
+        ("[veil]\npsf = \"table\"\ntable = \"none.csv\"\n", ["line 3", "none.csv", "cannot be read", "veil.table"]),
+        ("[veil]\nage = 3\n", ["line 1", "missing", "`psf`", "`veil`"]),
+        ("[veil]\npsf = \"none\"\nage = 3\n", ["line 3, column 1", "veil.age", "no veil", "none"]),
+        ("[veil]\npsf = \"cie\"\nreplaces_ghosts = true\n", ["line 3", "`replaces_ghosts`", "`psf`", "`border`"]),
+    ] {
+        place.text("look.toml", text);
+        place.vglare(&["apply", "in.exr", "-o", "out.exr", "--scene", "look.toml"]).failed(1, &words);
+    }
+    // A lens has a key more.
+    let lens = "[[lens_ghost]]\nalong = -1\nsize = 0.1\nshare = 0.1\n[veil]\npsf = \"cie\"\nreplace_ghosts = true\n";
+    place.text("lens.toml", lens);
+    let line = ["apply", "in.exr", "-o", "out.exr", "--lens", "lens.toml"];
+    place
+        .vglare(&line)
+        .failed(1, &["lens.toml: line 7, column 1", "`replace_ghosts`", "`tolerance`, `replaces_ghosts`"]);
 }
 
 #[test]
