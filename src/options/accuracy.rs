@@ -17,12 +17,12 @@ use crate::scene::Goal;
 pub struct AccuracyArgs {
     /// Largest error at any pixel, relative to the largest glare of the same colour [default: 0.001]; of a veil, relative to
     /// itself at that pixel [default: 0.01]
-    #[arg(long, value_name = "E", allow_negative_numbers = true, value_parser = tolerance)]
+    #[arg(long, value_name = "E", allow_hyphen_values = true, value_parser = tolerance)]
     tolerance: Option<f64>,
 
     /// Be as exact as this many milliseconds allow, by the cost model, instead of to a tolerance: for the spectrum and
     /// the field, without reading, compiling and writing. `vglare calibrate` fits the cost model to this machine
-    #[arg(long, value_name = "MILLISECONDS", conflicts_with = "tolerance", allow_negative_numbers = true, value_parser = budget)]
+    #[arg(long, value_name = "MILLISECONDS", conflicts_with = "tolerance", allow_hyphen_values = true, value_parser = budget)]
     budget: Option<f64>,
 
     /// Where the tolerance cannot be had, take the lowest that can, instead of failing

@@ -9,21 +9,21 @@ use crate::scene::FindOptions;
 pub struct FindArgs {
     /// Pixels of this luminance or more are light: scene-linear, in the photo's unit, 0 or more. By default the value
     /// that splits the photo's flux best into light and scene, at least 4 times its mean luminance
-    #[arg(long, value_name = "L", allow_negative_numbers = true, value_parser = not_negative)]
+    #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = not_negative)]
     threshold: Option<f64>,
 
     /// Regions that are this close to a brighter one join it, in the look's unit (see --unit); 0 merges none
     /// [default: 0.02]
-    #[arg(long, value_name = "R", allow_negative_numbers = true, value_parser = not_negative)]
+    #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = not_negative)]
     merge: Option<f64>,
 
     /// At most so many lights, the brightest [default: 64]
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
     max_lights: Option<usize>,
 
     /// A single pixel that is more than so many times as bright as each of its neighbours is a firefly or a hot pixel,
     /// and no light; 0 takes it as it is [default: 1000]
-    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = factor)]
+    #[arg(long, value_name = "F", allow_hyphen_values = true, value_parser = factor)]
     firefly_limit: Option<f64>,
 }
 

@@ -11,11 +11,11 @@ use crate::{Error, Result};
 #[derive(Debug, Clone, Default, clap::Args)]
 pub struct PsfArgs {
     /// Of cie, cie135, stiles-holladay: the observer's age in years, 0 to 120 [default: 25]
-    #[arg(long, value_name = "YEARS", allow_negative_numbers = true, value_parser = finite)]
+    #[arg(long, value_name = "YEARS", allow_hyphen_values = true, value_parser = finite)]
     age: Option<f64>,
 
     /// Of cie, cie135: the pigment of the observer's eyes, 0 (black) over 0.5 (brown) to 1.2 (light blue) [default: 0.5]
-    #[arg(long, value_name = "P", allow_negative_numbers = true, value_parser = finite)]
+    #[arg(long, value_name = "P", allow_hyphen_values = true, value_parser = finite)]
     pigment: Option<f64>,
 
     /// Of spencer: what the eye is adapted to [default: photopic]
@@ -23,7 +23,7 @@ pub struct PsfArgs {
     luminance: Option<Luminance>,
 
     /// Of gaussian: the standard deviation, in the look's unit
-    #[arg(long, value_name = "W", allow_negative_numbers = true, value_parser = finite)]
+    #[arg(long, value_name = "W", allow_hyphen_values = true, value_parser = finite)]
     width: Option<f64>,
 
     /// Of mixture: standard deviations, in the look's unit
@@ -51,7 +51,7 @@ pub struct PsfArgs {
     kernel: Option<PathBuf>,
 
     /// The share of the light that is scattered, above 0 and at most 1 [default: the function's own]
-    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = finite)]
+    #[arg(long, value_name = "F", allow_hyphen_values = true, value_parser = finite)]
     scatter: Option<f64>,
 }
 

@@ -16,7 +16,7 @@ pub struct UnitArgs {
 
     /// The field of view across the picture's width, in degrees, for all that is in degrees: 0.1 to 179 [default: what the
     /// photo's file says]
-    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = finite)]
+    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true, value_parser = finite)]
     fov: Option<f64>,
 }
 

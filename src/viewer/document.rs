@@ -383,7 +383,8 @@ mod tests {
         let mut pixels = vec![[0.1, 0.1, 0.1, 1.0]; 8 * 16];
         pixels[3 * 8 + 6] = [90.0, 90.0, 90.0, 1.0];
         pixels[3 * 8 + 7] = [90.0, 90.0, 90.0, 1.0];
-        let mut document = Document::new(Path::new("a.exr"), Photo::new(8, 16, pixels), Look::default());
+        let by_height = Look { unit: LengthUnit::Height, ..Look::default() };
+        let mut document = Document::new(Path::new("a.exr"), Photo::new(8, 16, pixels), by_height.clone());
         let (before, place) = (document.found.lights[0], document.place(document.found.lights[0].position));
         document.set_look(Look { unit: LengthUnit::ShortSide, ..Look::default() });
         let after = document.found.lights[0];
@@ -394,7 +395,7 @@ mod tests {
         let found = look.find(&document.photo, &frame);
         document.set_found(Search { options: look.find, unit: frame.unit, found });
         assert!((document.found.lights[0].position - after.position).length() < 1e-12 && !document.wants_search());
-        document.set_look(Look::default());
+        document.set_look(by_height);
         assert!((document.found.lights[0].position - before.position).length() < 1e-12 && document.wants_search());
         // Nothing says what a degree is here: that changes nothing but what the stage tells.
         document.set_look(Look { unit: LengthUnit::Degrees, ..Look::default() });

@@ -9,12 +9,12 @@ use crate::options::numbers::{colour, not_negative, positive};
 #[command(next_help_heading = "Look")]
 pub struct LookArgs {
     /// What the glare is multiplied by, 0 or more; 0 writes the photo as it is [default: 1]
-    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = not_negative)]
+    #[arg(long, value_name = "S", allow_hyphen_values = true, value_parser = not_negative)]
     strength: Option<f64>,
 
     /// What the size of every ghost, and of a veil on the picture's plane, is multiplied by, above 0; its light stays as much as it
     /// is [default: 1]
-    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "F", allow_hyphen_values = true, value_parser = positive)]
     size: Option<f64>,
 
     /// What the colour of every ghost is multiplied by, 0 or more each [default: 1,1,1]

@@ -182,7 +182,7 @@ struct OutputArgs {
     depth: Option<DepthArg>,
 
     /// Exposure in stops, for PNG, JPEG and integer TIFF
-    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = finite)]
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_hyphen_values = true, value_parser = finite)]
     exposure: f64,
 
     /// Tone map, for PNG, JPEG and integer TIFF [default: none if the photo is display-referred, else agx]

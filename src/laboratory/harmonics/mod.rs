@@ -61,7 +61,7 @@ pub struct Args {
     check: bool,
 
     /// Exposure in stops, for PNG, JPEG and integer TIFF
-    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true, value_parser = finite)]
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_hyphen_values = true, value_parser = finite)]
     exposure: f64,
 
     /// Replace files that exist

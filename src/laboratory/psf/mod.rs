@@ -36,7 +36,7 @@ pub struct Args {
     range: Option<Range>,
 
     /// How close the Gaussians are to come, relatively, from 1e-6 to 0.5
-    #[arg(long, value_name = "E", default_value_t = 1e-2, allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "E", default_value_t = 1e-2, allow_hyphen_values = true, value_parser = positive)]
     tolerance: f64,
 
     /// Draw profile, error of the Gaussians, encircled energy and transform: .svg or .png

@@ -101,7 +101,7 @@ mod tests {
         let ghost = Ghost { bell: Bell::Gaussian, center: DVec2::ZERO, size: DVec2::ONE, radiance: [1.0; 3] };
         assert_eq!(changed(&look, |look| look.ghosts.push(ghost)), Work::Ghosts);
         assert_eq!(after(|look| look.find = FindOptions { merge: 0.5, ..look.find }), Work::Lights);
-        assert_eq!(after(|look| look.unit = LengthUnit::ShortSide), Work::Lights);
+        assert_eq!(after(|look| look.unit = LengthUnit::Height), Work::Lights);
         assert_eq!(after(|look| look.fov = Some(40.0)), Work::Composite);
         let degrees = Look { unit: LengthUnit::Degrees, ..Look::default() };
         assert_eq!(changed(&degrees, |look| look.fov = Some(40.0)), Work::Lights);
