@@ -251,8 +251,11 @@ impl<'a> Chooser<'a> {
 
 /// The longest chain of roundings from a pixel to another: each tap of a kernel may be one, and the taps and pixels are rounded themselves.
 fn roundings(places: &[Place]) -> f64 {
+    let taps = |place: &Place| 2 * place.half.len() + 1;
     let chain = |place: &Place| {
-        let kernel = 2 * (2 * place.half.len() + 1);
+        // Those of one lattice are added to what is there, tap by tap.
+        let added: usize = places.iter().filter(|other| other.level == place.level).map(taps).sum();
+        let kernel = taps(place) + added;
         let lattices = if place.level == 0 { 0 } else { 2 * (7 + 4) + (place.level - 1) * 2 * (5 + 3) };
         kernel + lattices
     };

@@ -322,7 +322,12 @@ impl Task<'_> {
 
 /// The longest chain of roundings.
 fn roundings(model: &Model, radius: f64) -> f64 {
-    let chain = |placed: &super::model::Placed| 2 * (2 * placed.half.len() + 1) + 16 * placed.level;
+    let taps = |placed: &super::model::Placed| 2 * placed.half.len() + 1;
+    let chain = |placed: &super::model::Placed| {
+        // Those of one slot are added to what is there, tap by tap.
+        let added: usize = model.placed.iter().filter(|other| other.slot == placed.slot).map(taps).sum();
+        taps(placed) + added + 16 * placed.level
+    };
     let longest = model.placed.iter().map(chain).max().unwrap_or(0) + 80;
     // A small kernel is summed in a row.
     (longest + model.placed.len()) as f64 + std::f64::consts::PI * radius * radius
