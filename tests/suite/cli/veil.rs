@@ -159,7 +159,7 @@ fn what_no_veil_can_be_is_refused_by_name() {
         ("--veil table --table table.csv", ["--table", "2"]),
         // Numbers that begin with a minus are numbers, and told by their range.
         ("--veil cie --fov 50 --age -1", ["--age", "0 to 120"]),
-        ("--veil cie --fov 50 --pigment -0.5", ["--pigment", "0 to 1.2"]),
+        ("--veil cie --fov 50 --pigment -0.5", ["--pigment", "and not -0.5"]),
         ("--veil cie --fov -50", ["--fov", "0.1 to 179"]),
         ("--veil abg --abg -1,1e-3,2.5", ["--abg", "-1"]),
         ("--veil abg --abg 1,-1e-3,2.5", ["--abg", "-0.001"]),
