@@ -61,7 +61,7 @@ fn it_says_by_what_it_is_summed() {
             assert!(ways.contains(&by) && said.contains(by), "{veil}: {said}");
             // Gaussians are told where there are some, and are what is summed.
             let has_gaussians = ["pyramid", "sphere"].contains(&by);
-            assert_eq!(said.contains("Gaussians"), has_gaussians, "{said}");
+            assert_eq!(said.contains("Gaussian"), has_gaussians, "{said}");
             assert!(has_gaussians || !said.contains("left out"), "{said}");
         }
     }
