@@ -68,7 +68,8 @@ fn it_says_by_what_it_is_summed() {
     // Of ghosts that there are none of nothing is told.
     let (said, _) = place.planned("cie --fov 40");
     assert!(!said.contains("(total)") && !said.contains("chosen "), "{said}");
-    let with_ghosts = place.vglare(&["plan", "in.exr", "--veil", "cie", "--fov", "40"]).succeeded().stdout();
+    let with_ghosts =
+        place.vglare(&["plan", "in.exr", "--veil", "cie", "--fov", "40", "--firefly-limit", "0"]).succeeded().stdout();
     assert!(with_ghosts.contains("(total)") && with_ghosts.contains("chosen "), "{with_ghosts}");
 }
 
