@@ -117,10 +117,15 @@ const OF_SECTION: [&str; 4] = ["fov", "projection", "border", "tolerance"];
 
 /// The veil of a lens, as a table of the file at `path` says it.
 pub(super) fn of_lens(path: &Path, mut table: Spanned<VeilTable>) -> Result<Option<LensVeil>, Fault> {
-    let replaces_ghosts =
-        table.as_mut().remove(REPLACES_GHOSTS).map(|value| said(REPLACES_GHOSTS, value)).transpose()?;
+    let replaces_ghosts = match table.as_mut().remove(REPLACES_GHOSTS) {
+        None => false,
+        Some(said) => said.as_ref().as_bool().ok_or_else(|| {
+            let message = format!("expected true or false, found {} in `veil.{REPLACES_GHOSTS}`", said.as_ref());
+            Fault { span: said.span(), message }
+        })?,
+    };
     let section = parsed(path, table, &[REPLACES_GHOSTS])?;
-    Ok(section.map(|section| LensVeil { section, replaces_ghosts: replaces_ghosts.unwrap_or(false) }))
+    Ok(section.map(|section| LensVeil { section, replaces_ghosts }))
 }
 
 /// The section that a table of the file at `path` is; none where it says that there is none.

@@ -70,12 +70,13 @@ fn has_gaussians(summed_by: &str) -> bool {
 
 /// By what a veil is summed, of a function for which so many Gaussians stand.
 pub fn summed(summed_by: &str, terms: usize) -> String {
+    let gaussians = if terms == 1 { "1 Gaussian".to_owned() } else { format!("{terms} Gaussians") };
     match summed_by {
-        "pyramid" => format!("a pyramid of {terms} Gaussians"),
-        "sphere" => format!("{terms} Gaussians on the sphere"),
+        "pyramid" => format!("a pyramid of {gaussians}"),
+        "sphere" => format!("{gaussians} on the sphere"),
         "transform" => "a transform".to_owned(),
         "sum" => "a sum of every pixel's light at every other".to_owned(),
-        several => format!("{several}, of {terms} Gaussians"),
+        several => format!("{several}, of {gaussians}"),
     }
 }
 
