@@ -92,10 +92,15 @@ mod tests {
     use crate::job::veil::planning::Definition;
     use crate::veil::{Border, Gaussian, Geometry, Kernel, Mixture, Plan};
 
+    const SIZE: [usize; 2] = [320, 180];
+
+    /// Wide enough that the kernel vanishes nowhere on the picture.
+    const WIDTHS: [[f64; 2]; 4] = [[2.0, 1.0], [9.0, 0.1], [40.0, 0.01], [200.0, 0.001]];
+
     fn planned(geometry: Geometry, terms: &[[f64; 2]]) -> Channel {
         let terms = terms.iter().map(|&[sigma, weight]| Gaussian { sigma, weight }).collect();
         let kernel = Kernel::from_mixture(Mixture { terms, ..Mixture::default() }).expect("a kernel");
-        let plan = Plan::new(&geometry, &kernel, [160, 90], Border::None, 1e-2).expect("a plan");
+        let plan = Plan::new(&geometry, &kernel, SIZE, Border::None, 1e-2).expect("a plan");
         (plan, Definition::Radial(kernel))
     }
 
@@ -105,7 +110,7 @@ mod tests {
         let flat = Geometry::Planar { pitch: 1.0, solid_angle: 1.0 };
         let built_in = CostModel::default();
         let card = CostModel { veil_tap: 0.002, veil_pixel: 0.1, pass: 1.0, ..built_in };
-        let channels = [planned(flat, &[[2.0, 1.0], [9.0, 0.1]])];
+        let channels = [planned(flat, &WIDTHS)];
         assert_eq!(cheaper(&channels, 1e-2, &built_in), Processor::Cpu);
         assert_eq!(cheaper(&channels, 1e-2, &card), Processor::Gl);
         let slow_bus = CostModel { veil_pixel: 100.0, ..card };
@@ -114,8 +119,8 @@ mod tests {
         let bound = channels[0].0.on_device().expect("a plan for a device").bound();
         assert_eq!(cheaper(&channels, 0.999 * bound, &card), Processor::Cpu);
         // Of three channels all have to be for a device.
-        let sphere = planned(Geometry::rectilinear(40.0, 160), &[[2.0, 1.0], [9.0, 0.1]]);
-        let [one, two] = [0, 1].map(|_| planned(flat, &[[2.0, 1.0]]));
+        let sphere = planned(Geometry::rectilinear(40.0, SIZE[0]), &[[2.0, 1.0], [9.0, 0.1]]);
+        let [one, two] = [0, 1].map(|_| planned(flat, &WIDTHS));
         assert_eq!(cheaper(&[one, two, sphere], 1e-2, &card), Processor::Cpu);
     }
 }
