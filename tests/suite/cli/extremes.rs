@@ -74,7 +74,7 @@ fn a_picture_that_the_glare_makes_infinite_is_an_error_and_not_written() {
     let before = place.files();
     let args =
         ["apply", "in.pfm", "-o", "out.pfm", "--scene", "scene.toml", "--glare", "glare.pfm", "--report", "a.json"];
-    place.vglare(&args).failed(1, &["infinite or undefined at 1 pixels where the photo is not", "nothing is written"]);
+    place.vglare(&args).failed(1, &["the picture is infinite or undefined at 1 pixel where", "nothing is written"]);
     assert_eq!(place.files(), before);
     // What was infinite in the photo already stays so.
     photo.pixels[100] = [f32::INFINITY, f32::NAN, 0.0, 1.0];

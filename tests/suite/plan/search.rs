@@ -103,13 +103,13 @@ fn at_the_floor_is_as_exact_as_it_gets() {
 
 #[test]
 fn what_is_refused_is_named_with_the_reason() {
-    // So large that the passes of `series` and `rows` alone take less than a single bell, whose degree none of them has.
+    // So large that the passes of `series` alone take less than a single bell, whose degree it has not.
     let frame = Frame::full(1921, 1081);
     let tiny = [scenes::one([0.0, 0.0], 1e-6, [1.0, 2.0, 3.0])];
     let chosen = plan(&tiny, frame, &Request::new(1e-3)).unwrap();
     let refused: Vec<_> = chosen.refused.iter().map(|refusal| refusal.evaluator).collect();
     assert_eq!(refused, [Evaluator::Series, Evaluator::Rows, Evaluator::Grid]);
-    let says = ["degree", "degree", "the passes of grid alone"];
+    let says = ["degree", "the passes of rows alone", "the passes of grid alone"];
     let said = chosen.refused.iter().zip(says).all(|(refusal, says)| refusal.reason.contains(says));
     assert!(said, "{:?}", chosen.refused);
     // A renderer that ends loops early can neither sum many bells nor many terms.
