@@ -97,10 +97,10 @@ mod tests {
     /// Wide enough that the kernel vanishes nowhere on the picture.
     const WIDTHS: [[f64; 2]; 4] = [[2.0, 1.0], [9.0, 0.1], [40.0, 0.01], [200.0, 0.001]];
 
-    fn planned(geometry: Geometry, terms: &[[f64; 2]]) -> Channel {
-        let terms = terms.iter().map(|&[sigma, weight]| Gaussian { sigma, weight }).collect();
+    fn planned(geometry: Geometry, size: [usize; 2]) -> Channel {
+        let terms = WIDTHS.into_iter().map(|[sigma, weight]| Gaussian { sigma, weight }).collect();
         let kernel = Kernel::from_mixture(Mixture { terms, ..Mixture::default() }).expect("a kernel");
-        let plan = Plan::new(&geometry, &kernel, SIZE, Border::None, 1e-2).expect("a plan");
+        let plan = Plan::new(&geometry, &kernel, size, Border::None, 1e-2).expect("a plan");
         (plan, Definition::Radial(kernel))
     }
 
@@ -110,7 +110,7 @@ mod tests {
         let flat = Geometry::Planar { pitch: 1.0, solid_angle: 1.0 };
         let built_in = CostModel::default();
         let card = CostModel { veil_tap: 0.002, veil_pixel: 0.1, pass: 1.0, ..built_in };
-        let channels = [planned(flat, &WIDTHS)];
+        let channels = [planned(flat, SIZE)];
         assert_eq!(cheaper(&channels, 1e-2, &built_in), Processor::Cpu);
         assert_eq!(cheaper(&channels, 1e-2, &card), Processor::Gl);
         let slow_bus = CostModel { veil_pixel: 100.0, ..card };
@@ -119,8 +119,8 @@ mod tests {
         let bound = channels[0].0.on_device().expect("a plan for a device").bound();
         assert_eq!(cheaper(&channels, 0.999 * bound, &card), Processor::Cpu);
         // Of three channels all have to be for a device.
-        let sphere = planned(Geometry::rectilinear(40.0, SIZE[0]), &[[2.0, 1.0], [9.0, 0.1]]);
-        let [one, two] = [0, 1].map(|_| planned(flat, &WIDTHS));
+        let sphere = planned(Geometry::rectilinear(40.0, 16), [16, 16]);
+        let [one, two] = [0, 1].map(|_| planned(flat, SIZE));
         assert_eq!(cheaper(&[one, two, sphere], 1e-2, &card), Processor::Cpu);
     }
 }
