@@ -2,22 +2,22 @@
 //!
 //! | tag | source |
 //! | --- | --- |
-//! | [CIE146] | CIE 146:2002, *CIE equations for disability glare*: general, and age-adjusted Stiles-Holladay |
-//! | [CIE135] | CIE 135/1-1999, *Disability glare*, and Vos & van den Berg, eq. 8: the total glare function |
-//! | [SPENCER] | Spencer et al., *Physically-based glare effects for digital images*, SIGGRAPH 1995 |
+//! | \[CIE146\] | CIE 146:2002, *CIE equations for disability glare*: general, and age-adjusted Stiles-Holladay |
+//! | \[CIE135\] | CIE 135/1-1999, *Disability glare*, and Vos & van den Berg, eq. 8: the total glare function |
+//! | \[SPENCER\] | Spencer et al., *Physically-based glare effects for digital images*, SIGGRAPH 1995 |
 
 use serde::{Deserialize, Serialize};
 
 use super::Fault;
 use super::fault::within;
 
-/// From where on [CIE146]'s equation holds, in degrees; nearer, the value here is kept.
+/// From where on \[CIE146\]'s equation holds, in degrees; nearer, the value here is kept.
 pub(super) const CIE_FROM: f64 = 0.1;
-/// How far [CIE146]'s equation, [CIE135]'s and, here, Stiles and Holladay's go, in degrees.
+/// How far \[CIE146\]'s equation, \[CIE135\]'s and, here, Stiles and Holladay's go, in degrees.
 pub(super) const CIE_END: f64 = 100.0;
 /// From where on Stiles and Holladay's equation holds, in degrees; nearer, the value here is kept.
 pub(super) const STILES_FROM: f64 = 1.0;
-/// How far [SPENCER]'s functions go: each has unit energy over the hemisphere.
+/// How far \[SPENCER\]'s functions go: each has unit energy over the hemisphere.
 pub(super) const SPENCER_END: f64 = 90.0;
 
 /// The ages that are taken, in years: beyond what anybody measured, the equations are only continued.
@@ -79,12 +79,12 @@ pub enum Luminance {
     Scotopic,
 }
 
-/// 1 + (A/62.5)⁴, by which age raises [CIE146]'s wide part.
+/// 1 + (A/62.5)⁴, by which age raises \[CIE146\]'s wide part.
 fn age_factor(age: f64) -> f64 {
     1.0 + (age / 62.5).powi(4)
 }
 
-/// [CIE146]'s general equation without its constant, at θ > 0 degrees: 10/θ³ + (5/θ² + 0.1p/θ)(1 + (A/62.5)⁴).
+/// \[CIE146\]'s general equation without its constant, at θ > 0 degrees: 10/θ³ + (5/θ² + 0.1p/θ)(1 + (A/62.5)⁴).
 pub(super) fn cie(observer: Observer, angle: f64) -> f64 {
     let inverse = 1.0 / angle.max(CIE_FROM);
     let [first, second, third] = cie_powers(observer);
@@ -97,12 +97,12 @@ pub(super) fn cie_powers(observer: Observer) -> [f64; 3] {
     [0.1 * observer.pigment * aged, 5.0 * aged, 10.0]
 }
 
-/// [CIE146]'s constant: light through the wall of the eye.
+/// \[CIE146\]'s constant: light through the wall of the eye.
 pub(super) fn cie_constant(observer: Observer) -> f64 {
     0.0025 * observer.pigment
 }
 
-/// The parts of [CIE135], each (1 + (θ/c)²)^−β times a factor.
+/// The parts of \[CIE135\], each (1 + (θ/c)²)^−β times a factor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Moffat {
     pub factor: f64,
@@ -124,7 +124,7 @@ impl Moffat {
     }
 }
 
-/// [CIE135]'s total function without its constant and its term in θ², by its five parts. With a₄ = (A/70)⁴,
+/// \[CIE135\]'s total function without its constant and its term in θ², by its five parts. With a₄ = (A/70)⁴,
 ///
 /// (1 − 0.08a₄) [9.2e6 (1+(θ/0.0046)²)^−1.5 + 1.5e5 (1+(θ/0.045)²)^−1.5]
 /// + (1 + 1.6a₄) {400 (1+(θ/0.1)²)^−1 + p [1300 (1+(θ/0.1)²)^−1.5 + 0.8 (1+(θ/0.1)²)^−0.5]},
@@ -139,7 +139,7 @@ pub(super) fn cie135(observer: Observer) -> [Moffat; 5] {
     [0, 1, 2, 3, 4].map(scaled)
 }
 
-/// The five parts of [CIE135] by themselves: the core's two, the one that age raises, and the two of pigment.
+/// The five parts of \[CIE135\] by themselves: the core's two, the one that age raises, and the two of pigment.
 pub(super) const CIE135_MOFFATS: [Moffat; 5] = [
     Moffat { factor: 9.2e6, core: 0.0046, exponent: 1.5 },
     Moffat { factor: 1.5e5, core: 0.045, exponent: 1.5 },
@@ -148,7 +148,7 @@ pub(super) const CIE135_MOFFATS: [Moffat; 5] = [
     Moffat { factor: 0.8, core: 0.1, exponent: 0.5 },
 ];
 
-/// What θ² (degrees) is taken by in [CIE135], beside the factor of age.
+/// What θ² (degrees) is taken by in \[CIE135\], beside the factor of age.
 pub(super) const CIE135_QUADRATIC: f64 = 3e-8;
 
 /// 1 − 0.08a₄ and 1 + 1.6a₄, over the normaliser.
@@ -162,13 +162,13 @@ pub(super) fn cie135_normaliser(observer: Observer) -> f64 {
     1.0 + observer.pigment * (0.0417 + 0.055 * (observer.age / 70.0).powi(4))
 }
 
-/// [CIE135]'s constant, and the factor of its term in θ² (degrees).
+/// \[CIE135\]'s constant, and the factor of its term in θ² (degrees).
 pub(super) fn cie135_moments(observer: Observer) -> [f64; 2] {
     let [_, wide] = cie135_factors(observer);
     [0.0025 * observer.pigment / cie135_normaliser(observer), CIE135_QUADRATIC * wide]
 }
 
-/// [SPENCER]'s functions of θ in degrees without the ring f₃ (the ciliary corona's lenticular halo, which depends on
+/// \[SPENCER\]'s functions of θ in degrees without the ring f₃ (the ciliary corona's lenticular halo, which depends on
 /// the wavelength and lies at 3°): f₀ = 2.61e6 e^−(θ/0.02)², f₁ = 20.91/(θ+0.02)³, f₂ = 72.37/(θ+0.02)², by the weights
 /// of [`spencer_weights`]. The ring's share of the light, 0.016 (mesopic) or 0.033 (scotopic), is left out and not
 /// given to the others.
@@ -178,7 +178,7 @@ pub(super) fn spencer(luminance: Luminance, angle: f64) -> f64 {
     core * (-(angle / SPENCER_SHIFT) * (angle / SPENCER_SHIFT)).exp() + inverse * inverse * (square + inverse * cube)
 }
 
-/// The 0.02 degrees in all of [SPENCER]'s functions.
+/// The 0.02 degrees in all of \[SPENCER\]'s functions.
 pub(super) const SPENCER_SHIFT: f64 = 0.02;
 
 /// What e^−(θ/0.02)², (θ+0.02)⁻³ and (θ+0.02)⁻² are taken by.
@@ -191,7 +191,7 @@ pub(super) fn spencer_weights(luminance: Luminance) -> [f64; 3] {
     [core * 2.61e6, cube * 20.91, square * 72.37]
 }
 
-/// The age-adjusted equation of Stiles and Holladay [CIE146], 10 (1 + (A/70)⁴)/θ², is made for 1 to 30 degrees. Nearer,
+/// The age-adjusted equation of Stiles and Holladay \[CIE146\], 10 (1 + (A/70)⁴)/θ², is made for 1 to 30 degrees. Nearer,
 /// the value at 1° is kept; beyond, the same power goes on to 100°, which the standard does not say.
 pub(super) fn stiles_holladay(age: f64, angle: f64) -> f64 {
     let angle = angle.max(STILES_FROM);

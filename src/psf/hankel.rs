@@ -65,7 +65,7 @@ pub(super) fn transform_within(value: &impl Fn(f64) -> f64, scale: f64, end: f64
 }
 
 impl Moffat {
-    /// The transform at q > 0 radians per unit of one of the three exponents of [CIE135]: with z = cq, c the core, 2πc²
+    /// The transform at q > 0 radians per unit of one of the three exponents of \[CIE135\]: with z = cq, c the core, 2πc²
     /// times e^−z/z (β = 1/2), K₀(z) (β = 1), e^−z (β = 3/2).
     pub(super) fn transform(self, q: f64) -> f64 {
         let z = self.core * q;

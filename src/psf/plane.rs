@@ -2,8 +2,8 @@
 //!
 //! | tag | source |
 //! | --- | --- |
-//! | [HARVEY] | Harvey & Shack: light scattered by a polished surface, as A/(B + δ^g), δ in cosines of direction |
-//! | [KING] | I. R. King, *The profile of a star image*, PASP 83 (1971) 199: a Gaussian core, an aureole as r⁻² |
+//! | \[HARVEY\] | Harvey & Shack: light scattered by a polished surface, as A/(B + δ^g), δ in cosines of direction |
+//! | \[KING\] | I. R. King, *The profile of a star image*, PASP 83 (1971) 199: a Gaussian core, an aureole as r⁻² |
 
 use std::f64::consts::{PI, TAU};
 
@@ -96,7 +96,7 @@ pub(super) fn mixture(widths: &[f64], weights: Option<&[f64]>, tints: Option<&[[
     Ok(terms)
 }
 
-/// A/(B + r^g) [HARVEY].
+/// A/(B + r^g) \[HARVEY\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Abg {
     a: f64,
@@ -159,7 +159,7 @@ impl Abg {
 /// energy for each factor of width. Its integral is closed, S/(2πLr²) (e^(−r²/2σ₁²) − e^(−r²/2σ₀²)) with L = ln(σ₁/σ₀),
 /// S its share of the light.
 ///
-/// The form is [KING]'s; the numbers are chosen, since lenses differ and no table of measured ones is open. Of the
+/// The form is \[KING\]'s; the numbers are chosen, since lenses differ and no table of measured ones is open. Of the
 /// light, 1 % glows around a lamp and 2 % is spread over the picture; a black patch of a tenth of the height amid white
 /// has then about 1 %, what a clean lens may have.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,7 +2,7 @@
 //!
 //! At pixel b it is V(b) = Σ L(a) Ω k(θ_ab) over all pixels a ≠ b, angles between pixel centres. A [`Kernel`] gives k and
 //! a mixture of Gaussians that comes close to it; [`Plan::new`] decides how to sum the mixture on a picture of some size,
-//! and bounds how far what it sums is from k; [`Plan::evaluate`] does it. [`reference`] has the sum itself, in 64 bits.
+//! and bounds how far what it sums is from k; [`Plan::evaluate`] does it. [`mod@reference`] has the sum itself, in 64 bits.
 //!
 //! # Method
 //!

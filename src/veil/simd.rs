@@ -144,7 +144,7 @@ pub(super) enum Into {
     Add,
 }
 
-/// out[x] = Σ taps[i] values[x + i], for whole blocks: `values` has `out.len() + taps.len() − 1` floats at least.
+/// out\[x\] = Σ taps\[i\] values[x + i], for whole blocks: `values` has `out.len() + taps.len() − 1` floats at least.
 pub(super) fn slide<T: Real>(arch: Arch, values: &[T], taps: &[T], out: &mut [T], into: Into) {
     arch.dispatch(Slide { values, taps, out, into });
 }
@@ -183,7 +183,7 @@ impl<T: Real> WithSimd for Slide<'_, T> {
     }
 }
 
-/// out[x] = Σ factor · row[x] over `rows`, each at least as long as `out`, for whole blocks.
+/// out\[x\] = Σ factor · row\[x\] over `rows`, each at least as long as `out`, for whole blocks.
 pub(super) fn blend<T: Real>(arch: Arch, rows: &[(&[T], T)], out: &mut [T], into: Into) {
     arch.dispatch(Blend { rows, out, into });
 }

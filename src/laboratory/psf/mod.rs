@@ -86,7 +86,7 @@ const ROWS: usize = 400;
 /// Shows a function.
 ///
 /// # Errors
-/// [`Error::Usage`] where there is no such function; whatever keeps a file from being written.
+/// [`crate::Error::Usage`] where there is no such function; whatever keeps a file from being written.
 pub fn run(args: &Args) -> Result<()> {
     let drawn = args.plot.as_deref().map(|path| draw::kind(path).map(|kind| (path, kind))).transpose()?;
     let outputs: Vec<(&str, &Path)> = [("--plot", &args.plot), ("--csv", &args.csv)]

@@ -1,7 +1,7 @@
 //! One set of widths for all ages.
 //!
-//! At one pigment every age's function is the youngest's and the oldest's, mixed: [CIE146] is linear in (A/62.5)⁴,
-//! [CIE135] times its normaliser and Stiles and Holladay's in (A/70)⁴. So two sets of weights, of the same widths, give
+//! At one pigment every age's function is the youngest's and the oldest's, mixed: \[CIE146\] is linear in (A/62.5)⁴,
+//! \[CIE135\] times its normaliser and Stiles and Holladay's in (A/70)⁴. So two sets of weights, of the same widths, give
 //! all others, and no error is above the larger one of the two. The widths are the best ones of an age between. Pigment
 //! has widths of its own: it decides how the far end falls, and one set for all pigments would take two Gaussians more.
 

@@ -8,9 +8,9 @@
 //! # The bound
 //!
 //! Along one dimension a Gaussian on a lattice is realised as R(x, x + d), which depends on the offset d and on where x lies
-//! between two points of the lattice; its least and largest value over all such phases enclose it ([`lattice`]). Products of two
+//! between two points of the lattice; its least and largest value over all such phases enclose it (`lattice`). Products of two
 //! such intervals, summed over the mixture, enclose the realised kernel at an offset; their distance from the wanted value, over
-//! that value, is the bound ([`samples`] says at which offsets). Rounding adds n u Σ |terms| over the wanted value, n the length
+//! that value, is the bound (`samples` says at which offsets). Rounding adds n u Σ |terms| over the wanted value, n the length
 //! of the longest chain of sums and u half the distance from 1 to the next float.
 
 mod choose;
