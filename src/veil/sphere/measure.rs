@@ -54,11 +54,8 @@ pub(super) fn beyond(model: &Model, profile: &(dyn Fn(f64) -> f64 + Sync), limit
             if chord <= found.0 {
                 continue;
             }
-            let truth = profile(angle(chord));
-            let [low, high] = model.between(&there, &here, true);
-            let error = (high - truth).max(truth - low) / truth;
-            // NaN counts as wrong.
-            if error > limit || error.is_nan() {
+            let error = missed(model, profile(angle(chord)), &there, &here);
+            if error > limit {
                 found.0 = chord;
                 found.1 = if chord > far { found.1.max(error) } else { found.1 };
             }
@@ -82,17 +79,22 @@ pub(super) fn far(model: &Model, wanted: &Wanted) -> (f64, f64) {
             if chord <= wanted.near {
                 continue;
             }
-            let truth = wanted.at(chord);
-            let [low, high] = model.between(&there, &here, true);
-            let error = (high - truth).max(truth - low) / truth;
-            if error > worst.0 || error.is_nan() {
+            let error = missed(model, wanted.at(chord), &there, &here);
+            if error > worst.0 {
                 let [x, y] = [0, 1].map(|side| source[side].abs_diff(at[side]) as f64);
-                worst = (if error.is_nan() { f64::INFINITY } else { error }, x.hypot(y));
+                worst = (error, x.hypot(y));
             }
         }
         worst
     };
     TARGETS.par_iter().map(around).reduce(|| (0.0, 0.0), |one, other| if other.0 > one.0 { other } else { one })
+}
+
+/// The largest relative error of the image alone at one pair, whose truth is given; what is no number is wrong without bounds.
+fn missed(model: &Model, truth: f64, source: &Point, target: &Point) -> f64 {
+    let [low, high] = model.between(source, target, true);
+    let error = (high - truth).max(truth - low) / truth;
+    if error.is_nan() { f64::INFINITY } else { error }
 }
 
 /// The largest relative error over pairs that small kernels of tiles take, and the distance in pixels where it is; any above `enough`
