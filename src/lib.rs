@@ -70,6 +70,7 @@ pub mod plan;
 mod printable;
 pub mod problem;
 pub mod psf;
+pub mod raster;
 pub mod reference;
 pub mod renderer;
 pub mod scene;

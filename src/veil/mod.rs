@@ -47,10 +47,12 @@ pub use evaluate::Veil;
 pub(crate) use evaluate::{Labour, Lights, OnDevice};
 pub use geometry::{Border, Geometry};
 pub use kernel::{Gaussian, Kernel, Mixture};
+pub(crate) use photo::Sources;
 pub use photo::{BadSources, Photo};
 pub use picture::{Energy, Picture};
 pub(crate) use plan::{Layers, Near, PERIOD, Placed};
 pub use plan::{Method, Plan, Predicted};
+pub(crate) use simd::{Plane, Real};
 pub use transform::MOST_MEMORY;
 
 /// A veil below this share of its channel's largest is held to the tolerance of that share, and not of itself.

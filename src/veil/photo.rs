@@ -48,7 +48,7 @@ struct Survey {
 }
 
 /// A channel as a source.
-pub(super) struct Sources {
+pub(crate) struct Sources {
     /// Values times 2^`exponent`.
     pub plane: Plane<f32>,
     pub exponent: i32,
@@ -172,6 +172,14 @@ impl<'a> Photo<'a> {
         };
         left.iter_mut().zip(-(before as isize)..).for_each(|(into, column)| *into = beyond(column));
         right.iter_mut().zip(width as isize..).for_each(|(into, column)| *into = beyond(column));
+    }
+
+    /// The channels as sources, without a border.
+    pub(crate) fn channels(&self) -> [Sources; 3] {
+        let [width, height] = self.size;
+        let mut channels = [0, 1, 2].map(|_| Sources { plane: Plane::new(width, height), exponent: 0 });
+        self.sources(Border::None, [0; 2], &mut channels);
+        channels
     }
 
     /// What is no light.

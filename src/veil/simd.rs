@@ -86,6 +86,12 @@ impl<T: Real> Plane<T> {
         Self { width, height, stride, data: vec![T::default(); stride * height] }
     }
 
+    /// Another of its values, padding included.
+    pub fn map<U: Real>(&self, of: impl Fn(T) -> U) -> Plane<U> {
+        let Self { width, height, stride, ref data } = *self;
+        Plane { width, height, stride, data: data.iter().map(|value| of(*value)).collect() }
+    }
+
     /// Columns that mean something.
     pub fn width(&self) -> usize {
         self.width

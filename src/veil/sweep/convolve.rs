@@ -8,7 +8,7 @@ use crate::veil::simd::{BLOCK, Into, Plane, Real, blend, padded, slide};
 
 /// A kernel that is the product of one along rows, with the weight, and one along columns.
 #[derive(Debug, Clone)]
-pub(in crate::veil) struct Separable<T> {
+pub(crate) struct Separable<T> {
     /// From −radius to radius.
     pub across: Vec<T>,
     /// From −radius to radius.

@@ -54,7 +54,7 @@ pub(crate) fn points(pixels: usize, lattices: usize) -> Vec<usize> {
 }
 
 /// All lattices over pictures of one size, used again and again.
-pub(super) struct Pyramid<T> {
+pub(crate) struct Pyramid<T> {
     /// The photo's moments, from lattice 1 on.
     pub moments: Vec<Plane<T>>,
     /// What each lattice and those above it sum to.
@@ -62,6 +62,15 @@ pub(super) struct Pyramid<T> {
 }
 
 impl<T: Real> Pyramid<T> {
+    /// The moments of a photo on `lattices` of them.
+    pub fn moments_of(photo: &Plane<T>, lattices: usize) -> Vec<Plane<T>> {
+        let [columns, rows] = [photo.width(), photo.height()].map(|pixels| points(pixels, lattices));
+        let moments = columns.iter().zip(&rows).map(|(width, height)| Plane::new(*width, *height)).collect();
+        let mut pyramid = Self { moments, sums: Vec::new() };
+        pyramid.reduce(Arch::new(), photo);
+        pyramid.moments
+    }
+
     /// `lattices` of them.
     pub fn new(size: [usize; 2], lattices: usize) -> Self {
         let [columns, rows] = size.map(|pixels| points(pixels, lattices));
