@@ -12,8 +12,7 @@ layout(std140, binding = BINDING_PASS) uniform Pass {
     vec4 luminance;  // weights of R, G, B; w: the luminance from which on a pixel is a light
     float strength;
     float flat_span; // a range no wider than this is rounding
-    float pad0;
-    float pad1;
+    vec2 knee;       // a soft threshold, and how far below and above it the transition goes
     mat4x3 overlay_weights; // of each layer that is laid over the photo, RGB
 };
 layout(location = 0) out vec4 picture;
@@ -29,9 +28,15 @@ void main() {
 #else
     vec4 light = texelFetch(photo, pixel, 0);
 #ifdef TAKE_LIGHT
+#ifdef SOFT
+    bool gives = true;
+    vec3 keeps = 1.0 - shining(light, knee) * (1.0 - light_gain.rgb);
+#else
     bool gives = is_light(emitted(light, luminance.rgb), luminance.w);
+    vec3 keeps = light_gain.rgb;
+#endif
     // Of a light, what is below 0 is no light.
-    light.rgb *= gives ? mix(vec3(1.0), light_gain.rgb, greaterThan(light.rgb, vec3(0.0))) : vec3(1.0);
+    light.rgb *= gives ? mix(vec3(1.0), keeps, greaterThan(light.rgb, vec3(0.0))) : vec3(1.0);
 #endif
     picture = vec4(light.rgb + added, light.a);
 #endif

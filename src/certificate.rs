@@ -1,14 +1,14 @@
 //! The error of a field that was rendered, measured against the direct sum in f64, at sample pixels or at all of them.
 
 mod sample;
+mod whole;
 
 use std::sync::Arc;
 
 use crate::compare::{Comparison, compare_in};
 use crate::frame::Window;
 use crate::plan::Plan;
-use crate::problem::Problem;
-use crate::reference;
+use crate::problem::{Images, Problem};
 use crate::renderer::Field;
 use crate::{Error, Result};
 
@@ -62,20 +62,18 @@ impl Certificate {
     /// # Errors
     /// [`Error::Gl`] where the driver refuses.
     pub fn measure_all(field: &mut Field, plan: &Plan, mut advance: impl FnMut(usize)) -> Result<Self> {
-        let (ghosts, frame) = (plan.problem().ghosts(), plan.problem().frame());
+        let (problem, frame) = (plan.problem(), plan.problem().frame());
         field.set_scene(plan)?;
         let mut comparison = Comparison::in_units(plan.scale);
         // Where each tile's values begin among all of them.
         let mut tiles: Vec<(usize, Window)> = Vec::new();
         field.visit(frame, |tile, rendered| {
             tiles.push((comparison.count(), tile));
-            for (batch, rendered) in rendered.chunks(BATCH).enumerate() {
-                let place = |k: usize| {
-                    let [i, j] = place(tile, batch * BATCH + k);
-                    frame.position(f64::from(i), f64::from(j))
-                };
-                let points: Vec<_> = (0..rendered.len()).map(place).collect();
-                comparison.add(&reference::direct_at(ghosts, &points), rendered);
+            // Columns are summed once for all rows that cross them.
+            let batched = if problem.images().is_some_and(Images::are_products) { rendered.len() } else { BATCH };
+            for (batch, rendered) in rendered.chunks(batched.max(1)).enumerate() {
+                let pixels: Vec<_> = (0..rendered.len()).map(|k| place(tile, batch * batched + k)).collect();
+                comparison.add(&problem.truth(&pixels), rendered);
                 advance(rendered.len());
             }
         })?;
@@ -137,10 +135,8 @@ impl Samples {
 
     /// Holds them against the direct sum of the same ghosts.
     pub fn certify(&self) -> Certificate {
-        let (ghosts, frame) = (self.problem.ghosts(), self.problem.frame());
-        let points: Vec<_> = self.pixels.iter().map(|&[i, j]| frame.position(f64::from(i), f64::from(j))).collect();
         // In the plan's own unit where that is larger: light that cancels, or that does not reach the picture, is nothing.
-        let difference = compare_in(&reference::direct_at(ghosts, &points), &self.rendered, self.unit);
+        let difference = compare_in(&self.problem.truth(&self.pixels), &self.rendered, self.unit);
         Certificate {
             asked: self.asked,
             predicted: self.predicted,

@@ -89,6 +89,17 @@ pub enum Mix {
     Energy,
 }
 
+/// What in a photo makes ghosts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "terminal", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+pub enum Sources {
+    /// Every pixel
+    Photo,
+    /// What is found to be a light, as one round spot each
+    Lights,
+}
+
 /// What a look's lengths are counted in: sizes, and positions from the picture's centre.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "terminal", derive(clap::ValueEnum))]

@@ -18,3 +18,19 @@ float emitted(vec4 pixel, vec3 weights) {
 bool is_light(float luminance, float threshold) {
     return luminance >= threshold && luminance > 0.0;
 }
+
+// The share of a pixel's light that shines, as scene::Knee has it; of straight colours the threshold sees alpha's share.
+float shining(vec4 pixel, vec2 knee) {
+    float brightest = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        if (!isnan(pixel[k]) && !isinf(pixel[k])) brightest = max(brightest, pixel[k]);
+    }
+#ifdef STRAIGHT
+    brightest *= isnan(pixel.a) || isinf(pixel.a) ? 0.0 : clamp(pixel.a, 0.0, 1.0);
+#endif
+    if (!(brightest > 0.0)) return 0.0;
+    float above = brightest - knee.x;
+    float begun = clamp(above + knee.y, 0.0, 2.0 * knee.y);
+    float soft = knee.y > 0.0 ? begun * (begun / (4.0 * knee.y)) : 0.0;
+    return clamp(max(above, soft) / brightest, 0.0, 1.0);
+}

@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 use glam::DVec2;
 use rayon::prelude::*;
 
+use super::whole::crossings;
 use crate::frame::Frame;
 use crate::plan::{self, Area, Plan};
 use crate::scene::Ghost;
@@ -31,6 +32,9 @@ const ALONG_BORDERS: i32 = 12;
 /// and the rest spread evenly over the window.
 pub(crate) fn sample_pixels(plan: &Plan) -> Vec<[i32; 2]> {
     let (ghosts, frame) = (plan.problem().ghosts(), plan.problem().frame());
+    if let Some(images) = plan.problem().images() {
+        return crossings(plan, images);
+    }
     let count = ghosts.len().max(1);
     let most = (EFFORT / count).clamp(FEWEST, MOST).max((EFFORT_OF_FEW / count).min(MOST_OF_FEW));
     let mut sample = Sample { frame, pixels: Vec::new(), seen: HashSet::new() };

@@ -204,7 +204,10 @@ mod tests {
         assert_eq!(options(&["a.exr"]), FindOptions::default());
         let given =
             options(&["a.exr", "--threshold", "2.5", "--merge", "0", "--max-lights", "7", "--firefly-limit", "1"]);
-        assert_eq!(given, FindOptions { threshold: Some(2.5), merge: 0.0, max_lights: 7, firefly_limit: 1.0 });
+        assert_eq!(
+            given,
+            FindOptions { threshold: Some(2.5), merge: 0.0, max_lights: 7, firefly_limit: 1.0, knee: 0.0 }
+        );
         for bad in [
             ["--threshold", "nan"],
             ["--threshold=-1", "--json"],

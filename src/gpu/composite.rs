@@ -25,7 +25,8 @@ pub(crate) struct Composite {
     pub strength: f32,
     /// A range of values that is no wider is rounding, and no contrast to stretch.
     pub flat: f32,
-    pub pad: [f32; 2],
+    /// A soft threshold, and how far about it is the transition.
+    pub knee: [f32; 2],
     /// What each layer that is laid over the photo is multiplied by, RGB.
     pub overlay: [[f32; 4]; OVERLAY_LAYERS],
 }
@@ -40,6 +41,8 @@ pub(crate) struct Variant {
     pub normalize: Binding,
     /// Whether the photo's lights are multiplied by `light_gain`.
     pub take_light: bool,
+    /// By a soft threshold.
+    pub soft: bool,
     /// Whether the photo's colours are not multiplied by alpha, which tells its lights.
     pub straight: bool,
     /// How many layers are laid over the photo; 0, or as many as are loaded.
@@ -53,6 +56,9 @@ impl Variant {
         defines.extend(overlay::defines(self.layers));
         if self.take_light {
             defines.push(("TAKE_LIGHT", "1"));
+            if self.soft {
+                defines.push(("SOFT", "1"));
+            }
             if self.straight {
                 defines.push(("STRAIGHT", "1"));
             }

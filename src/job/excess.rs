@@ -15,7 +15,7 @@ impl Found<'_> {
     /// Says so where the glare is out of all proportion to the photo, which is not yet overlaid.
     pub(super) fn absurd(&self, plan: &Plan) -> Option<String> {
         let (strength, scale) = (self.look.strength, plan.scale.into_iter().fold(0.0, f64::max));
-        if self.look.normalize != Normalize::None || self.scene.ghosts.is_empty() {
+        if self.look.normalize != Normalize::None || self.scene.is_dark() {
             return None;
         }
         let peak = self.scene.found.as_ref().map_or_else(|| brightest(&self.photo), |found| found.peak);

@@ -8,8 +8,8 @@ use crate::Result;
 use crate::frame::Frame;
 use crate::look::{Gathered, Look, Search};
 use crate::photo::{self, BadPixels, Facts, Photo};
-use crate::problem::Problem;
 use crate::renderer::Settings;
+use crate::scene::FindOptions;
 
 /// A photo in which it is known what glares.
 pub struct Found<'a> {
@@ -59,7 +59,14 @@ impl<'a> Found<'a> {
         let bright = |threshold| bright_light(&photo, &frame, threshold);
         let (settings, warning) = settings(look, &photo, &scene, bright)?;
         warnings.extend(warning);
-        if look.strength != 0.0 && (look.veil.is_some() || !scene.ghosts.is_empty()) {
+        let FindOptions { threshold, knee, .. } = look.find;
+        if look.takes_photo() && look.find != (FindOptions { threshold, knee, ..FindOptions::default() }) {
+            warnings.push("rules for lights, but for a threshold, change nothing where every pixel is a source".into());
+        }
+        if knee != 0.0 && !(look.takes_photo() && threshold.is_some()) {
+            warnings.push("a knee is of a threshold where every pixel is a source, and changes nothing here".into());
+        }
+        if look.strength != 0.0 && (look.veil.is_some() || !scene.is_dark()) {
             warnings.extend(panorama::seam(&photo));
         }
         Ok(Self { look, facts: photo.facts(), photo, frame, bad, scene, stages, warnings, settings })
@@ -83,7 +90,7 @@ impl<'a> Found<'a> {
     /// Where there is no plan, or its glare is beyond what 32-bit floats hold; [`crate::Error::Cancelled`].
     pub fn plan(mut self, computer: &mut Computer, watch: &impl Watch) -> Result<Planned<'a>> {
         watch.begin(Step::Planning)?;
-        let problem = Problem::new(self.scene.ghosts.clone(), self.frame);
+        let problem = self.scene.problem(self.frame);
         let (accuracy, known) = (&self.look.accuracy, computer.known.clone());
         let planning = self.stages.time("plan", || plan(accuracy, &problem, Some(&computer.info), known))?;
         computer.known.warning = None;

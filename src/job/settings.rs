@@ -5,7 +5,7 @@ use crate::frame::Frame;
 use crate::look::{Gathered, Look};
 use crate::photo::Photo;
 use crate::renderer::Settings;
-use crate::scene::{Emission, Ghost, is_light};
+use crate::scene::{Emission, is_light};
 use crate::{Error, Result};
 
 /// What the composite is told, and what to warn of. Where light is taken from the photo's lights, `bright` gives
@@ -32,9 +32,18 @@ pub fn settings(
     if normalize != Normalize::None {
         return Err(Error::Usage("--mix energy needs --normalize none: only that glare has a light's energy".into()));
     }
-    let threshold = scene.found.as_ref().map_or(f64::INFINITY, |found| found.threshold);
-    let (gain, enough) = light_gain(bright(threshold), &scene.ghosts, strength);
-    settings.threshold = threshold;
+    let carried = carried(scene);
+    let (gain, enough) = match &scene.images {
+        // Where the whole photo shines, what shines of each pixel is light.
+        Some(images) => {
+            settings.knee = Some(look.find.knee());
+            light_gain(images.raster().flux(), carried, strength)
+        }
+        None => {
+            settings.threshold = scene.found.as_ref().map_or(f64::INFINITY, |found| found.threshold);
+            light_gain(bright(settings.threshold), carried, strength)
+        }
+    };
     settings.light_gain = gain;
     let warning = (!enough).then(|| {
         "the glare has more light than the photo's lights; they are black now, and the picture has gained light".into()
@@ -59,15 +68,22 @@ pub fn bright_light(photo: &Photo, frame: &Frame, threshold: f64) -> [f64; 3] {
     bright
 }
 
-/// What pixels with the light `bright` keep of themselves, so that they lose what the ghosts carry; and whether they
-/// have that much to lose.
-fn light_gain(bright: [f64; 3], ghosts: &[Ghost], strength: f64) -> ([f64; 3], bool) {
-    let mut scattered = [0.0; 3];
-    for ghost in ghosts {
-        for (scattered, flux) in scattered.iter_mut().zip(ghost.flux()) {
-            *scattered += strength * flux;
-        }
-    }
+/// What all ghosts carry, RGB.
+fn carried(scene: &Gathered) -> [f64; 3] {
+    let of_images = scene.images.as_ref().map_or([0.0; 3], |images| {
+        let (share, flux) = (images.share(), images.raster().flux());
+        [0, 1, 2].map(|colour| share[colour] * flux[colour])
+    });
+    scene.ghosts.iter().fold(of_images, |sum, ghost| {
+        let flux = ghost.flux();
+        [0, 1, 2].map(|colour| sum[colour] + flux[colour])
+    })
+}
+
+/// What pixels with the light `bright` keep of themselves, so that they lose what ghosts carry; and whether they have that
+/// much to lose.
+fn light_gain(bright: [f64; 3], carried: [f64; 3], strength: f64) -> ([f64; 3], bool) {
+    let scattered = carried.map(|flux| strength * flux);
     let kept = [0, 1, 2].map(|c| if scattered[c] > 0.0 { 1.0 - scattered[c] / bright[c] } else { 1.0 });
     (kept.map(|kept| if kept.is_nan() { 0.0 } else { kept.max(0.0) }), kept.iter().all(|&kept| kept >= 0.0))
 }
@@ -78,6 +94,7 @@ mod tests {
 
     use super::*;
     use crate::photo::{Alpha, Primaries};
+    use crate::scene::Ghost;
     use crate::series::Bell;
 
     #[test]
@@ -92,13 +109,13 @@ mod tests {
             size: DVec2::ONE,
             radiance: [flux / std::f64::consts::TAU, 0.0, 0.0],
         };
-        let (gain, enough) = light_gain(bright_light(&photo, &photo.frame, 10.0), &[ghost(2.5)], 2.0);
+        let (gain, enough) = light_gain(bright_light(&photo, &photo.frame, 10.0), ghost(2.5).flux(), 2.0);
         assert!((gain[0] - 0.8).abs() < 1e-12 && gain[1..] == [1.0, 1.0] && enough, "{gain:?}");
-        let (gain, enough) = light_gain(bright_light(&photo, &photo.frame, 10.0), &[ghost(50.0)], 1.0);
+        let (gain, enough) = light_gain(bright_light(&photo, &photo.frame, 10.0), ghost(50.0).flux(), 1.0);
         assert_eq!((gain, enough), ([0.0, 1.0, 1.0], false));
-        let (gain, enough) = light_gain(bright_light(&photo, &photo.frame, f64::INFINITY), &[ghost(1.0)], 1.0);
+        let (gain, enough) = light_gain(bright_light(&photo, &photo.frame, f64::INFINITY), ghost(1.0).flux(), 1.0);
         assert_eq!((gain, enough), ([0.0, 1.0, 1.0], false));
-        assert_eq!(light_gain(bright_light(&photo, &photo.frame, 10.0), &[], 1.0), ([1.0; 3], true));
+        assert_eq!(light_gain(bright_light(&photo, &photo.frame, 10.0), [0.0; 3], 1.0), ([1.0; 3], true));
     }
 
     #[test]

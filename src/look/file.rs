@@ -1,7 +1,7 @@
 //! Looks as scene files, and back.
 
 use super::{Accuracy, Look, LookLens, LookLights, Shared, Veil};
-use crate::choices::{LengthUnit, Mix};
+use crate::choices::{LengthUnit, Mix, Sources};
 use crate::scene::presets::{DEFAULT_PRESET, NO_LENS};
 use crate::scene::{AccuracySection, FindOptions, FindSection, LookSection, SceneFile, VeilSection};
 use crate::{Error, Result};
@@ -16,7 +16,9 @@ impl Look {
     pub fn from_scene(scene: SceneFile) -> Result<Self> {
         // Ghosts alone are the whole scene: nothing then is looked for in the photo.
         let ghosts_only = !scene.ghosts.is_empty() && scene.lens_ghosts.is_empty() && scene.preset.is_none();
+        let photo = scene.look.sources == Some(Sources::Photo);
         let lights = match scene.lights {
+            lights if photo => LookLights::Photo(lights.unwrap_or_default().into()),
             Some(lights) if scene.find.add && !lights.is_empty() => LookLights::FoundAnd(lights.into()),
             Some(_) | None if scene.find.add => LookLights::Found,
             Some(lights) => LookLights::Listed(lights.into()),
@@ -28,7 +30,7 @@ impl Look {
             None if scene.lens_ghosts.is_empty() => LookLens::preset(DEFAULT_PRESET)?,
             None => LookLens::Own(scene.lens_ghosts.into()),
         };
-        let LookSection { strength, size, tint, mix, normalize, unit, fov } = scene.look;
+        let LookSection { strength, size, tint, mix, normalize, unit, fov, sources: _ } = scene.look;
         let AccuracySection { goal, allow_floor, evaluator } = scene.accuracy;
         let of_veil = scene.veil.as_ref().and_then(|veil| veil.fov);
         if let (Some(one), Some(other)) = (fov, of_veil)
@@ -90,11 +92,15 @@ impl Look {
         let preset_has_veil = preset.is_some() && lens.veil().is_some();
         let listed = match lights {
             LookLights::Found => None,
-            LookLights::Listed(lights) | LookLights::FoundAnd(lights) => Some(lights.to_vec()),
+            LookLights::Photo(lights) if lights.is_empty() => None,
+            LookLights::Listed(lights) | LookLights::FoundAnd(lights) | LookLights::Photo(lights) => {
+                Some(lights.to_vec())
+            }
         };
         let add = matches!(lights, LookLights::FoundAnd(_));
+        let sources = matches!(lights, LookLights::Photo(_)).then_some(Sources::Photo);
         let Accuracy { goal, allow_floor, degree, period, evaluator } = *accuracy;
-        let FindOptions { threshold, merge, max_lights, firefly_limit } = *find;
+        let FindOptions { threshold, merge, max_lights, firefly_limit, knee } = *find;
         SceneFile {
             description: description.clone(),
             preset,
@@ -110,12 +116,14 @@ impl Look {
                 normalize: Some(*normalize),
                 unit: (*unit != LengthUnit::OF_FILES).then_some(*unit),
                 fov: if veil.is_some() { None } else { *fov },
+                sources,
             },
             find: FindSection {
                 threshold,
                 merge: Some(merge),
                 max_lights: Some(max_lights),
                 firefly_limit: Some(firefly_limit),
+                knee: (knee != 0.0).then_some(knee),
                 add,
             },
             accuracy: AccuracySection { goal: Some(goal), allow_floor, evaluator },
@@ -161,7 +169,7 @@ mod tests {
             tint: [1.0, 0.3, 0.0],
             lights: LookLights::Listed(vec![light].into()),
             ghosts: vec![ghost.clone()].into(),
-            find: FindOptions { threshold: Some(3.5), merge: 0.1, max_lights: 5, firefly_limit: 20.0 },
+            find: FindOptions { threshold: Some(3.5), merge: 0.1, max_lights: 5, firefly_limit: 20.0, knee: 0.5 },
             strength: 1.7,
             veil: None,
             mix: Mix::Energy,

@@ -3,10 +3,12 @@
 use std::sync::Arc;
 
 use super::{Look, LookLights};
-use crate::choices::Mix;
+use crate::choices::{Mix, Sources};
 use crate::frame::Frame;
 use crate::photo::Photo;
-use crate::scene::{self, Emission, FindOptions, Found, Ghost, Lens, Light};
+use crate::problem::{Images, Problem};
+use crate::raster::Raster;
+use crate::scene::{self, Emission, FindOptions, Found, Ghost, Knee, Lens, Light};
 
 /// What glares in one photo.
 pub struct Gathered {
@@ -18,6 +20,34 @@ pub struct Gathered {
     pub lens: Option<Lens>,
     /// Ghosts of the lights, then those that no light makes.
     pub ghosts: Arc<[Ghost]>,
+    /// Ghosts of all pixels, where they make some.
+    pub images: Option<Arc<Images>>,
+}
+
+impl Gathered {
+    /// Whether nothing glares.
+    pub fn is_dark(&self) -> bool {
+        self.ghosts.is_empty() && self.images.as_ref().is_none_or(|images| images.all().is_empty())
+    }
+
+    /// What in the photo makes ghosts.
+    pub fn sources(&self) -> Sources {
+        if self.images.is_some() { Sources::Photo } else { Sources::Lights }
+    }
+
+    /// How many ghosts there are, those of all pixels too.
+    pub fn count(&self) -> usize {
+        let images = self.images.as_ref().map_or(0, |images| images.raster().pixels() * images.all().len());
+        self.ghosts.len() + images
+    }
+
+    /// What is to be planned, on a frame in the same unit.
+    pub fn problem(&self, frame: Frame) -> Arc<Problem> {
+        match &self.images {
+            Some(images) => Problem::with_images(self.ghosts.clone(), images.clone(), frame),
+            None => Problem::new(self.ghosts.clone(), frame),
+        }
+    }
 }
 
 /// What a photo was searched by, and what was found.
@@ -42,24 +72,42 @@ impl Look {
     pub fn gather_knowing(&self, photo: &Photo, frame: &Frame, search: Option<Search>) -> Gathered {
         let fits = |search: &Search| search.options == self.find && search.unit == frame.unit;
         let known = search.filter(fits).map(|search| search.found);
-        self.gather_from(self.searches().then(|| known.unwrap_or_else(|| self.find(photo, frame))))
+        let found = self.searches().then(|| known.unwrap_or_else(|| self.find(photo, frame)));
+        Gathered { images: self.images(|| self.raster(photo, frame)), ..self.gather_from(found) }
+    }
+
+    /// What of a photo shines where every pixel is a source, on its frame as [`Look::frame`] gives it.
+    ///
+    /// # Panics
+    /// For a frame of other pixels than the photo's.
+    pub fn raster(&self, photo: &Photo, frame: &Frame) -> Arc<Raster> {
+        let given = Emission::of(photo).given(&photo.pixels);
+        let knee = self.find.knee();
+        let shining = if knee == Knee::NONE { given } else { knee.shining(&given).into() };
+        Raster::new(&shining, *frame).expect("a photo has the pixels of its frame")
+    }
+
+    /// The ghosts of all pixels of a photo, as [`Look::raster`] gives it; none where others shine.
+    pub fn images(&self, raster: impl FnOnce() -> Arc<Raster>) -> Option<Arc<Images>> {
+        let of = |raster| Arc::new(Images::new(raster, self.lens_ghosts(), self.axis, self.size, self.tint));
+        self.takes_photo().then(|| of(raster()))
     }
 
     /// What glares in a photo of which `found` is known.
     pub fn gather_from(&self, found: Option<Found>) -> Gathered {
         let lights = self.lights(found.as_ref().map_or(&[], |found| &found.lights)).into_owned();
-        let lens = (!lights.is_empty()).then(|| self.lens());
-        Gathered { ghosts: self.ghosts(&lights).into(), found, lights, lens }
+        let lens = (!lights.is_empty() || self.takes_photo()).then(|| self.lens());
+        Gathered { ghosts: self.ghosts(&lights).into(), found, lights, lens, images: None }
     }
 
     /// Whether a photo is to be searched: for lights, or for the threshold that tells them from the rest.
     pub fn searches(&self) -> bool {
-        self.finds() || self.mix == Mix::Energy
+        self.finds() || (self.mix == Mix::Energy && !self.takes_photo())
     }
 
     /// Whether lights of the photo shine.
     pub fn finds(&self) -> bool {
-        !matches!(self.lights, LookLights::Listed(_)) && !self.lens_ghosts().is_empty()
+        matches!(self.lights, LookLights::Found | LookLights::FoundAnd(_)) && !self.lens_ghosts().is_empty()
     }
 
     /// Whether there are any ghosts to be rendered: not through a lens without ghosts, which makes none of any light.

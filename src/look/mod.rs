@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use crate::choices::{Evaluator, LengthUnit, Mix, Normalize};
+use crate::choices::{Evaluator, LengthUnit, Mix, Normalize, Sources};
 use crate::scene::presets::{self, DEFAULT_PRESET};
 use crate::scene::{FindOptions, Ghost, Goal, Lens, LensGhost, LensVeil, Light};
 use crate::{Error, Result};
@@ -77,6 +77,8 @@ pub enum LookLights {
     Listed(Shared<Light>),
     /// The photo is searched, and these are added to what is found; never empty.
     FoundAnd(Shared<Light>),
+    /// Every pixel of the photo is one, and these are added.
+    Photo(Shared<Light>),
 }
 
 /// How exact the glare is, and how it is computed; what is `None` is planned.
@@ -178,7 +180,7 @@ impl Look {
     pub fn lights<'a>(&'a self, found: &'a [Light]) -> Cow<'a, [Light]> {
         match &self.lights {
             LookLights::Found => found.into(),
-            LookLights::Listed(lights) => lights.as_slice().into(),
+            LookLights::Listed(lights) | LookLights::Photo(lights) => lights.as_slice().into(),
             LookLights::FoundAnd(lights) => [found, lights.as_slice()].concat().into(),
         }
     }
@@ -188,7 +190,27 @@ impl Look {
         match &mut self.lights {
             LookLights::Found if more.is_empty() => {}
             LookLights::Found => self.lights = LookLights::FoundAnd(more.into()),
-            LookLights::Listed(lights) | LookLights::FoundAnd(lights) => lights.extend(more),
+            LookLights::Listed(lights) | LookLights::FoundAnd(lights) | LookLights::Photo(lights) => {
+                lights.extend(more)
+            }
         }
+    }
+
+    /// Makes the photo's pixels, or what is found in it, the source; lights that are listed stay, beside the one or the other.
+    pub fn shine_by(&mut self, sources: Sources) {
+        let listed = match std::mem::replace(&mut self.lights, LookLights::Found) {
+            LookLights::Found => Shared::default(),
+            LookLights::Listed(lights) | LookLights::FoundAnd(lights) | LookLights::Photo(lights) => lights,
+        };
+        self.lights = match sources {
+            Sources::Photo => LookLights::Photo(listed),
+            Sources::Lights if listed.is_empty() => LookLights::Found,
+            Sources::Lights => LookLights::FoundAnd(listed),
+        };
+    }
+
+    /// Whether every pixel of the photo makes ghosts.
+    pub fn takes_photo(&self) -> bool {
+        matches!(self.lights, LookLights::Photo(_)) && !self.lens_ghosts().is_empty()
     }
 }

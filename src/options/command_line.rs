@@ -4,7 +4,8 @@ use std::path::Path;
 
 use glam::DVec2;
 
-use crate::look::{Accuracy, Look, LookLens, LookLights, Veil};
+use crate::choices::Sources;
+use crate::look::{Accuracy, Look, LookLens, LookLights, Shared, Veil};
 use crate::scene::{FindOptions, Goal, NO_VEIL};
 use crate::{Error, Result};
 
@@ -32,7 +33,7 @@ fn needs_file(look: &Look) -> bool {
     // A veil has many options, and a file says them all.
     matches!(look.lens, LookLens::Own(_))
         || (look.veil.is_some() && !has_veil_of_lens(look))
-        || look.lights != LookLights::Found
+        || !(look.lights == LookLights::Found || look.lights == LookLights::Photo(Shared::default()))
         || !look.ghosts.is_empty()
 }
 
@@ -56,7 +57,7 @@ fn options(look: &Look) -> Result<Vec<String>> {
     // All fields by name: one that is added does not compile until it is an option, or said by a file.
     #[rustfmt::skip]
     let Look {
-        description: _, lens, unit, fov, axis, size, tint, lights: _, ghosts: _, find, strength, veil, mix, normalize, accuracy,
+        description: _, lens, unit, fov, axis, size, tint, lights, ghosts: _, find, strength, veil, mix, normalize, accuracy,
     } = look;
     match lens {
         LookLens::File(path, _) => options.add("--lens", word(path)?),
@@ -67,14 +68,18 @@ fn options(look: &Look) -> Result<Vec<String>> {
     if lens.veil().is_some() && veil.is_none() {
         options.add("--veil", NO_VEIL);
     }
+    if matches!(lights, LookLights::Photo(_)) {
+        options.add("--sources", name(Sources::Photo));
+    }
     options.changed("--unit", *unit, default.unit, name);
     options.given("--fov", *fov, |fov| fov.to_string());
     options.changed("--axis", *axis, default.axis, pair);
-    let FindOptions { threshold, merge, max_lights, firefly_limit } = *find;
+    let FindOptions { threshold, merge, max_lights, firefly_limit, knee } = *find;
     options.given("--threshold", threshold, |x| x.to_string());
     options.changed("--merge", merge, default.find.merge, |x| x.to_string());
     options.changed("--max-lights", max_lights, default.find.max_lights, |n| n.to_string());
     options.changed("--firefly-limit", firefly_limit, default.find.firefly_limit, |x| x.to_string());
+    options.changed("--knee", knee, default.find.knee, |x| x.to_string());
     options.changed("--strength", *strength, default.strength, |x| x.to_string());
     options.changed("--size", *size, default.size, |x| x.to_string());
     options.changed("--tint", *tint, default.tint, |[r, g, b]| format!("{r},{g},{b}"));

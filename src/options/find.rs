@@ -25,6 +25,11 @@ pub struct FindArgs {
     /// and no light; 0 takes it as it is [default: 1000]
     #[arg(long, value_name = "F", allow_hyphen_values = true, value_parser = factor)]
     firefly_limit: Option<f64>,
+
+    /// With `--sources photo` and a threshold: pixels begin to shine so far below it and shine in full so far above, in luminance;
+    /// what shines is what is above the threshold [default: 0]
+    #[arg(long, value_name = "K", allow_hyphen_values = true, value_parser = not_negative)]
+    knee: Option<f64>,
 }
 
 impl FindArgs {
@@ -35,6 +40,7 @@ impl FindArgs {
             merge: self.merge.unwrap_or(set.merge),
             max_lights: self.max_lights.unwrap_or(set.max_lights),
             firefly_limit: self.firefly_limit.unwrap_or(set.firefly_limit),
+            knee: self.knee.unwrap_or(set.knee),
         }
     }
 }

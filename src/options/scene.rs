@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use glam::DVec2;
 
 use crate::Result;
-use crate::choices::{LengthUnit, Mix};
+use crate::choices::{LengthUnit, Mix, Sources};
 use crate::look::{Look, LookLens, LookLights};
 use crate::options::UnitArgs;
 use crate::options::numbers::point;
@@ -39,6 +39,10 @@ pub struct SceneArgs {
     /// More lights, from such a file, beside those of the photo (or of --lights, or of the scene file)
     #[arg(long, value_name = "FILE")]
     add_lights: Option<PathBuf>,
+
+    /// What in the photo makes ghosts: every pixel, or what is found to be a light [default: lights]
+    #[arg(long, value_enum, value_name = "WHAT", conflicts_with = "lights")]
+    sources: Option<Sources>,
 
     /// Where the lens's axis meets the picture, in the look's unit (see --unit) from its centre: ghosts lie on lines through it
     /// [default: 0,0]
@@ -85,6 +89,9 @@ impl SceneArgs {
         }
         if let Some(unit) = self.unit_of_lights()?.filter(|_| !names_unit) {
             look.unit = unit;
+        }
+        if let Some(sources) = self.sources {
+            look.shine_by(sources);
         }
         if let Some(path) = &self.lights {
             look.lights = LookLights::Listed(scene::read_lights_in(path, look.unit)?.into());

@@ -13,7 +13,8 @@ use rayon::prelude::*;
 use super::modes::{Mode, Modes};
 use super::rounding::Strength;
 use super::weigh::weight;
-use super::{CostModel, Group, Transform, gather};
+use super::{CostModel, Group, Transform, gather, images};
+use crate::problem::{Images, Problem};
 use crate::scene::Ghost;
 use crate::series::{Factor, Modes as Bells, kappa};
 
@@ -26,18 +27,20 @@ const MOST_WORK: f64 = 3e8;
 /// More modes than this are not kept track of: a series of so many takes seconds at any size of picture.
 const MOST_MODES: usize = 1 << 18;
 
-/// Whether so many ghosts could be looked at in a series of a few modes.
+/// Whether so many ghosts could be looked at in a series of a few modes; a photo's images are not left to a device.
 pub(super) fn worth_a_try(groups: &[Group]) -> bool {
     const FEW: usize = 16;
-    FEW * members(groups) <= EFFORT
+    FEW * members(groups) <= EFFORT || groups.iter().any(|group| matches!(group.transform, Transform::Photo(_)))
 }
 
 /// Whether to look at so many modes: where the plan needs to know them for any series at all, at more of them.
 pub(super) fn worth_looking(groups: &[Group], counts: &[u32], period: DVec2, needed: bool) -> bool {
     let modes: usize = counts.iter().map(|&count| count as usize).sum();
-    let apart = groups.iter().filter(|group| !matches!(group.transform, Transform::Gather(_)));
+    let apart = groups.iter().filter(|group| !matches!(group.transform, Transform::Gather(_) | Transform::Photo(_)));
     let few = modes.saturating_mul(apart.map(|group| group.members.len()).sum()) <= EFFORT;
-    modes <= MOST_MODES && (few || needed) && work(groups, counts, period) <= MOST_WORK
+    // A photo's images have no other way.
+    let only = groups.iter().any(|group| matches!(group.transform, Transform::Photo(_)));
+    modes <= MOST_MODES && (only || (few || needed) && work(groups, counts, period) <= MOST_WORK)
 }
 
 /// What a ghost takes for each mode, about, in nanoseconds.
@@ -49,7 +52,7 @@ pub(super) fn work(groups: &[Group], counts: &[u32], period: DVec2) -> f64 {
     // Of each mode: what it adds, and what of it is kept.
     const ALONE: f64 = 60.0;
     let one = |group: &Group| {
-        if let Transform::Gather(_) = group.transform {
+        if let Transform::Gather(_) | Transform::Photo(_) = group.transform {
             return gather::cost(group, &group.transform, &CostModel { pass: 0.0, ..CostModel::default() });
         }
         let [n, m] = group.degree;
@@ -99,9 +102,9 @@ impl Amplitudes {
     /// ```
     ///
     /// and at most κ/2 (|Z₊| + |Z₋|). For a radial bell the transform stands in the place of u_n v_m.
-    pub fn new(ghosts: &[Ghost], groups: &[Group], counts: &[u32], period: DVec2, scale: Rgb) -> Self {
+    pub fn new(problem: &Problem, groups: &[Group], counts: &[u32], period: DVec2, scale: Rgb) -> Self {
         let started = Instant::now();
-        let sums = View { ghosts, counts, period, scale }.sums(groups);
+        let sums = View::new(problem, counts, period, scale).sums(groups);
         let kappas = (0..).zip(counts).flat_map(|(n, &count)| (0..count).map(move |m| kappa(n, m)));
         let (terms, values): (Vec<Mode>, Vec<Rgb>) =
             sums.0.iter().zip(kappas).map(|(sums, kappa)| mode(sums, kappa)).unzip();
@@ -206,8 +209,8 @@ fn beyond(values: &[Rgb], counts: &[u32]) -> (Vec<Rgb>, Vec<f64>) {
 }
 
 /// The modes of groups alone, without what they add.
-pub(super) fn modes(ghosts: &[Ghost], groups: &[Group], counts: &[u32], period: DVec2, scale: Rgb) -> Vec<Mode> {
-    let sums = View { ghosts, counts, period, scale }.sums(groups);
+pub(super) fn modes(problem: &Problem, groups: &[Group], counts: &[u32], period: DVec2, scale: Rgb) -> Vec<Mode> {
+    let sums = View::new(problem, counts, period, scale).sums(groups);
     let kappas = (0..).zip(counts).flat_map(|(n, &count)| (0..count).map(move |m| kappa(n, m)));
     sums.0.iter().zip(kappas).map(|(sums, kappa)| mode(sums, kappa).0).collect()
 }
@@ -215,18 +218,30 @@ pub(super) fn modes(ghosts: &[Ghost], groups: &[Group], counts: &[u32], period: 
 /// What all tasks look at.
 struct View<'a> {
     ghosts: &'a [Ghost],
+    images: Option<&'a Images>,
     counts: &'a [u32],
     period: DVec2,
     scale: Rgb,
 }
 
-impl View<'_> {
+impl<'a> View<'a> {
+    fn new(problem: &'a Problem, counts: &'a [u32], period: DVec2, scale: Rgb) -> Self {
+        Self { ghosts: problem.ghosts(), images: problem.images(), counts, period, scale }
+    }
+
     /// The sums over all groups, of every mode that each of them adds to, but for the modes' weights κ.
     fn sums(&self, groups: &[Group]) -> Sums {
+        let of_photo = |group: &&Group| matches!(group.transform, Transform::Photo(_));
         let gathered = |group: &&Group| matches!(group.transform, Transform::Gather(_));
-        let (gathered, others): (Vec<&Group>, Vec<&Group>) = groups.iter().partition(gathered);
+        let (of_photo, others): (Vec<&Group>, Vec<&Group>) = groups.iter().partition(of_photo);
+        let (gathered, others): (Vec<&Group>, Vec<&Group>) = others.into_iter().partition(gathered);
         let mut sums = self.one_by_one(&others);
         gathered.into_iter().for_each(|group| self.add_gathered(&mut sums, group));
+        let added =
+            self.images.and_then(|images| images::sums(images, &of_photo, self.counts, self.period, self.scale));
+        if let Some(added) = added {
+            sums.add(&Sums(added));
+        }
         sums
     }
 

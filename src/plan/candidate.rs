@@ -9,7 +9,9 @@ use super::period::{self, Reach};
 use super::request::GHOSTS_A_ROUND;
 use super::series::{self, Wide};
 use super::weigh::{self, Weighed};
-use super::{Evaluator, Group, Layer, Plan, Precision, Prediction, Request, cost, direct, rounding, share, terms};
+use super::{
+    Evaluator, Group, Layer, Plan, Precision, Prediction, Request, cost, direct, images, rounding, share, terms,
+};
 use crate::problem::Problem;
 use crate::series::{Distinct, Modes};
 use crate::{Error, Result};
@@ -47,8 +49,13 @@ pub(super) struct Beside {
 
 impl Survey {
     pub fn new(problem: &Problem, request: &Request) -> Self {
-        let weighed = weigh::weigh(problem, request.tolerance);
-        let groups = terms::group(problem.ghosts(), &weighed);
+        Self::of(problem, weigh::weigh(problem, request.tolerance))
+    }
+
+    /// Of what was weighed.
+    pub fn of(problem: &Problem, weighed: Weighed) -> Self {
+        let mut groups = terms::group(problem.ghosts(), &weighed.weights);
+        groups.extend(problem.images().into_iter().flat_map(|images| images::groups(images, &weighed)));
         let reaches = period::reaches(problem, &weighed);
         Self {
             weighed,

@@ -4,6 +4,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::{HIGHEST_DEGREE, Request};
+use crate::problem::Images;
 use crate::scene::Ghost;
 use crate::series::{Bell, SineGaussian};
 use crate::{Error, Result};
@@ -42,6 +43,12 @@ pub(super) fn ghosts(ghosts: &[Ghost]) -> Result<()> {
     };
     let first = ghosts.par_iter().enumerate().find_map_first(|(index, ghost)| Some((index, wrong(ghost)?)));
     first.map_or(Ok(()), |(index, wrong)| Err(Error::Plan(format!("ghost {} has {wrong}", index + 1))))
+}
+
+/// Refuses the same of a photo's images.
+pub(super) fn images(images: &Images) -> Result<()> {
+    let gathered: Vec<Ghost> = images.all().iter().map(|image| images.gathered(image)).collect();
+    ghosts(&gathered)
 }
 
 /// The least sizes that the ghost's bell may have, where it is too narrow.

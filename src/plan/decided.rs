@@ -77,7 +77,7 @@ impl Plan {
         let Some(series) = self.series() else { return Vec::new() };
         let units = self.units();
         let Some(modes) = &series.modes else {
-            return amplitudes::modes(self.problem.ghosts(), &series.groups, &series.counts, series.period, units);
+            return amplitudes::modes(&self.problem, &series.groups, &series.counts, series.period, units);
         };
         let ratio = [0, 1, 2].map(|colour| self.scale[colour] / units[colour]);
         let turned = |mode: Mode| [0, 1, 2].map(|colour| mode[colour].map(|term| term * ratio[colour]));

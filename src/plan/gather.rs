@@ -3,7 +3,8 @@
 use glam::DVec2;
 
 use super::decay::Decay;
-use super::{CostModel, Group, Prediction, share, weigh};
+use super::{CostModel, Group, Prediction, images, share, weigh};
+use crate::raster::Reduction;
 use crate::scene::Ghost;
 use crate::series::Bell;
 use crate::series::moments::{Cells, Point, Sizes, Sums, order_within, sizes_within};
@@ -16,6 +17,8 @@ pub enum Transform {
     Dispatch,
     /// Every ghost meets the moments of its cell, on the CPU, and the moments meet the modes: `series::moments`.
     Gather(Gathering),
+    /// Every pixel of the photo makes them, on the CPU: the photo's own waves, from its moments.
+    Photo(Reduction),
     /// Not at all: the ghosts are summed at every pixel, or where they reach.
     Direct,
 }
@@ -35,7 +38,7 @@ impl Transform {
     /// What a gathered ghost has to do, in moments: its own, and what it takes to find its cell and its polynomials.
     pub fn moments(&self) -> f64 {
         match self {
-            Self::Dispatch | Self::Direct => 0.0,
+            Self::Dispatch | Self::Direct | Self::Photo(_) => 0.0,
             Self::Gather(Gathering { cells, sizes }) => {
                 f64::from(*sizes) * (EACH + f64::from(cells.orders[0]) * f64::from(cells.orders[1]))
             }
@@ -109,7 +112,9 @@ pub(super) fn choose_in_doubles(groups: &mut [Group], period: DVec2, budget: f64
     let part = budget / groups.len().max(1) as f64;
     let model = CostModel { pass: 0.0, ..CostModel::default() };
     let mut added = 0.0;
-    for group in groups.iter_mut().filter(|group| group.bell == Bell::Gaussian) {
+    for group in
+        groups.iter_mut().filter(|group| group.bell == Bell::Gaussian && group.transform == Transform::Dispatch)
+    {
         let modes = group.degree.map(|degree| f64::from(degree + 1));
         // Half of the rectangle is kept.
         let otherwise = 0.5 * each * group.ghosts as f64 * modes[0] * modes[1];
@@ -182,6 +187,7 @@ pub(super) fn cost(group: &Group, transform: &Transform, model: &CostModel) -> f
     let ghosts = group.ghosts as f64;
     match transform {
         Transform::Direct => 0.0,
+        Transform::Photo(reduction) => images::cost(group, *reduction),
         Transform::Dispatch => ghosts * modes[0] * modes[1] * model.spectrum,
         Transform::Gather(Gathering { cells, sizes }) => {
             let ([x, y], [p, q]) = (cells.counts.map(f64::from), cells.orders.map(f64::from));

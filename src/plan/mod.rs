@@ -13,6 +13,7 @@ mod direct;
 mod effort;
 mod floor;
 mod gather;
+mod images;
 mod lattice;
 mod layer;
 mod local;
@@ -26,6 +27,7 @@ mod series;
 mod slots;
 mod split;
 mod terms;
+mod unit;
 mod weigh;
 
 use std::sync::Arc;
@@ -33,7 +35,7 @@ use std::sync::Arc;
 use glam::DVec2;
 use rayon::prelude::*;
 
-use crate::problem::Problem;
+use crate::problem::{Images, Problem};
 use crate::scene::Ghost;
 use crate::{Error, Result};
 
@@ -90,6 +92,8 @@ mod share {
     /// Of gathered groups, out of the tenth of its part that periodisation never uses: each digit costs one moment more
     /// along each axis, so there is no need for more.
     pub const GATHERING: f64 = 0.005;
+    /// Of a photo's moments, which every image takes; what is beyond the part before this the terms make up for.
+    pub const IMAGES: f64 = 0.08;
 }
 
 /// The cheapest plan that meets the request.
@@ -112,6 +116,9 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
     let ghosts = problem.ghosts();
     check::request(asked)?;
     check::ghosts(ghosts)?;
+    if let Some(images) = problem.images() {
+        return attempt_with(images, problem, asked);
+    }
     let request = &Request { period: own_period(ghosts, asked)?, ..*asked };
     request.period.map_or(Ok(()), check::period)?;
     let survey = Survey::new(problem, request);
@@ -164,6 +171,34 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
             found.series(problem, &survey, request, &series, given);
         }
     }
+    Ok(found.cheapest())
+}
+
+/// The same where the whole photo shines: all is one series, whose modes are the photo's own.
+fn attempt_with(
+    images: &Images,
+    problem: &Arc<Problem>,
+    asked: &Request,
+) -> Result<std::result::Result<Plan, Vec<Error>>> {
+    check::images(images)?;
+    if let Some(evaluator) = asked.evaluator.filter(|evaluator| !evaluator.is_series()) {
+        let (pixels, each) = (images.raster().pixels(), images.all().len());
+        return Err(Error::Plan(format!(
+            "the ghosts of all pixels are {pixels} times {each}, which a series adds up and {evaluator} cannot; give --sources lights, or              another evaluator"
+        )));
+    }
+    let bells: Vec<Ghost> =
+        images.all().iter().map(|image| image.ghost.clone()).chain(problem.ghosts().to_vec()).collect();
+    let request = &Request { period: own_period(&bells, asked)?, ..*asked };
+    request.period.map_or(Ok(()), check::period)?;
+    let survey = Survey::of(problem, unit::weighed(problem, images, request)?);
+    check::scale(survey.weighed.scale)?;
+    let mut found = Found::default();
+    let wanted = |evaluator: &Evaluator| request.evaluator.is_none_or(|only| only == *evaluator);
+    let series: Vec<Evaluator> =
+        [Evaluator::Grid, Evaluator::Rows, Evaluator::Series].into_iter().filter(wanted).collect();
+    let given = request.degree.is_some() || (asked.period.is_some() && asked.evaluator.is_some());
+    found.series(problem, &survey, request, &series, given);
     Ok(found.cheapest())
 }
 

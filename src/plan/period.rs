@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::slots::{Slots, by_chunks};
 use super::weigh::{Weighed, along};
-use crate::problem::Problem;
+use crate::problem::{Images, Problem};
 use crate::scene::Ghost;
 use crate::series::{Bell, Modes, Shape};
 
@@ -29,6 +29,19 @@ impl Reach {
             size: ghost.size,
             farthest: (ghost.center - low).abs().max((high - ghost.center).abs()),
             nearest: DVec2::new(along(shape, offset.x.abs()), along(shape, offset.y.abs())),
+            weight,
+        }
+    }
+
+    /// Of an image: its ghosts, the centres of which lie anywhere between two places.
+    pub fn of_image(ghost: &Ghost, weight: f64, [least, most]: [DVec2; 2], [low, high]: [DVec2; 2]) -> Self {
+        let shape = ghost.bell.shape();
+        let gap = (least - high).max(low - most).max(DVec2::ZERO) / ghost.size;
+        Self {
+            bell: ghost.bell.clone(),
+            size: ghost.size,
+            farthest: (most - low).abs().max((high - least).abs()),
+            nearest: DVec2::new(along(shape, gap.x), along(shape, gap.y)),
             weight,
         }
     }
@@ -62,7 +75,14 @@ pub(super) fn reaches(problem: &Problem, weighed: &Weighed) -> Vec<Reach> {
     let chunks = by_chunks(problem.ghosts(), &weighed.weights, |ghosts| {
         joined(ghosts.map(|(_, ghost, weight)| (&ghost.bell, Reach::new(ghost, weight, bounds))))
     });
-    joined(chunks.iter().flatten().map(|reach| (&reach.bell, reach.clone())))
+    let of_images = weighed.images.iter().zip(problem.images().into_iter().flat_map(Images::all));
+    let images: Vec<Reach> = of_images
+        .filter_map(|(&weight, image)| {
+            let centres = problem.images()?.centres(image);
+            Some(Reach::of_image(&image.ghost, weight, centres, bounds))
+        })
+        .collect();
+    joined(chunks.iter().flatten().chain(&images).map(|reach| (&reach.bell, reach.clone())))
 }
 
 /// The reaches of each bell and bin joined.

@@ -8,8 +8,8 @@ use super::decay::{self, Decay};
 use super::lattice::{self, Marginals};
 use super::rounding::Strength;
 use super::{
-    Evaluator, Group, Lattice, Layer, Modes, Precision, Prediction, Request, Series, check, cost, gather, period,
-    rounding, share, terms,
+    Evaluator, Group, Lattice, Layer, Modes, Precision, Prediction, Request, Series, Transform, check, cost, gather,
+    images, period, rounding, share, terms,
 };
 use crate::frame::Frame;
 use crate::problem::Problem;
@@ -17,7 +17,7 @@ use crate::series::Modes as Bells;
 use crate::{Error, Result};
 
 /// What of the tolerance may lie beyond the modes of [`Wide`].
-const BEYOND: f64 = 0.02;
+pub(super) const BEYOND: f64 = 0.02;
 
 /// A period that serves every evaluator, and more modes than any of them needs, each with what it adds to the field.
 pub(super) struct Wide {
@@ -29,13 +29,16 @@ pub(super) struct Wide {
     beyond: f64,
     /// What gathering ghosts left out.
     gathering: f64,
+    /// Whether there is nothing to choose among the modes: they were given, for images of the photo.
+    given: bool,
 }
 
 impl Wide {
     /// None where looking at every ghost's phases takes too long, or where the series is given.
     pub fn new(problem: &Problem, survey: &Survey, request: &Request) -> Option<Self> {
+        let images = problem.images();
         let given = request.degree.is_some() || request.evaluator.is_some_and(|evaluator| !evaluator.is_series());
-        if given || !amplitudes::worth_a_try(&survey.groups) {
+        if given && images.is_none() || !amplitudes::worth_a_try(&survey.groups) {
             return None;
         }
         survey.prepare().ok()?;
@@ -43,16 +46,23 @@ impl Wide {
         let usable = (request.tolerance - rounding).max(0.25 * request.tolerance);
         let period = request.period.unwrap_or_else(|| period::shortest(&survey.reaches, usable * share::PERIODISATION));
         let mut groups = survey.groups.clone();
-        let counts = terms::fewest(&mut groups, period, usable * BEYOND, &survey.effort).ok()?;
-        let gathering =
+        let counts = match request.degree {
+            Some(degree) => terms::rectangle(&mut groups, degree),
+            None if images.is_some() => images::enough(&mut groups, period, usable, &survey.effort)?,
+            None => terms::fewest(&mut groups, period, usable * BEYOND, &survey.effort).ok()?,
+        };
+        let mut gathering =
             gather::choose_in_doubles(&mut groups, period, share::GATHERING * request.tolerance, amplitudes::MODE);
+        if let Some(images) = images {
+            gathering += images::reduce(&mut groups, images, period, share::IMAGES * request.tolerance);
+        }
         // By weights there may be no series at all.
         let needed = rounding > (1.0 - NEEDED) * request.tolerance;
         if !amplitudes::worth_looking(&groups, &counts, period, needed) {
             return None;
         }
         survey.effort.spend(amplitudes::work(&groups, &counts, period)).ok()?;
-        let amplitudes = Amplitudes::new(problem.ghosts(), &groups, &counts, period, survey.weighed.scale);
+        let amplitudes = Amplitudes::new(problem, &groups, &counts, period, survey.weighed.scale);
         let beyond = terms::error(&groups, period, &counts);
         Some(Self {
             period,
@@ -61,7 +71,18 @@ impl Wide {
             amplitudes,
             beyond,
             gathering,
+            given,
         })
+    }
+
+    /// The modes, and their period.
+    pub fn modes(&self) -> (&Modes, DVec2) {
+        (self.amplitudes.modes(), self.period)
+    }
+
+    /// What they are off by at most, as they were computed.
+    pub fn error(&self) -> f64 {
+        self.periodisation + self.beyond + self.gathering
     }
 
     /// What f32 costs with all of the modes.
@@ -81,7 +102,10 @@ impl Wide {
 
     /// The strongest of the modes, and what they hold.
     fn terms(&self, truncation: f64) -> Terms {
-        let (counts, left) = self.amplitudes.kept(truncation - self.beyond);
+        let (counts, left) = match self.given {
+            true => (self.amplitudes.modes().counts().to_vec(), 0.0),
+            false => self.amplitudes.kept(truncation - self.beyond),
+        };
         let mut groups = self.groups.clone();
         for group in &mut groups {
             let [n, m] = group.degree;
@@ -143,7 +167,12 @@ pub(super) fn plan_series(
         return Err(decay::no_series(&group.bell));
     }
     survey.prepare()?;
-    let wide = wide.filter(|wide| wide.fits(request, usable));
+    // A photo's images are in the series that was looked at, or in none.
+    let of_photo = survey.groups.iter().any(|group| matches!(group.transform, Transform::Photo(_)));
+    let wide = wide.filter(|wide| of_photo || wide.fits(request, usable));
+    if of_photo && wide.is_none() {
+        return Err(images::too_many(&survey.groups));
+    }
     let period = match (request.period, wide) {
         (Some(period), _) => period,
         (None, Some(wide)) => wide.period,
@@ -152,7 +181,8 @@ pub(super) fn plan_series(
     let periodisation = wide.map_or_else(|| period::error(&survey.reaches, period), |w| w.periodisation);
     check::copies(period, periodisation)?;
     let predicted = Prediction { periodisation, ..predicted };
-    let excess = excess(&predicted, usable);
+    let moments = wide.map_or(0.0, |wide| wide.gathering - share::GATHERING * request.tolerance);
+    let excess = excess(&predicted, usable) + moments.max(0.0);
     let brief = Brief { evaluator, precision, survey, wide, frame, request, period, predicted, usable, excess };
     if evaluator != Evaluator::Grid {
         return brief.finish(brief.terms(share::TRUNCATION)?, None);
@@ -208,6 +238,7 @@ impl Brief<'_> {
         let truncation = self.usable * part - self.excess;
         let terms = match (self.request.degree, self.wide) {
             (None, Some(wide)) => wide.terms(truncation),
+            (Some(_), Some(wide)) if wide.given => wide.terms(truncation),
             (degree, _) => {
                 let mut groups = self.survey.groups.clone();
                 let counts = match degree {
@@ -253,7 +284,9 @@ impl Brief<'_> {
         }
         let Request { tolerance, ref cost_model, .. } = *self.request;
         // In 64-bit floats every ghost meets every mode, but for what was gathered when the modes were looked at.
-        if self.precision == Precision::Single {
+        if self.precision == Precision::Single
+            && !groups.iter().any(|group| matches!(group.transform, Transform::Photo(_)))
+        {
             predicted.gathering += gather::choose(&mut groups, self.period, tolerance, &predicted, cost_model);
         }
         let (evaluator, precision, period) = (self.evaluator, self.precision, self.period);

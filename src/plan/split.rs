@@ -133,6 +133,7 @@ fn only(weighed: &Weighed, groups: &[Group]) -> Weighed {
         peaks: peaks.clone(),
         weight: weights.iter().sum(),
         weights,
+        images: Vec::new(),
         nearest: nearest.clone(),
         dropped: *dropped,
         dropped_error: *dropped_error,

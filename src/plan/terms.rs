@@ -9,7 +9,6 @@ use super::decay::Decay;
 use super::effort::Effort;
 use super::gather::Transform;
 use super::slots::{Slots, by_chunks};
-use super::weigh::Weighed;
 use crate::Result;
 use crate::scene::Ghost;
 use crate::series::Bell;
@@ -41,8 +40,8 @@ pub struct Group {
 
 /// Groups the ghosts that are not dropped: sizes within half an octave share a group, or equal sizes where the bell's
 /// coefficients come from a table.
-pub(super) fn group(ghosts: &[Ghost], weighed: &Weighed) -> Vec<Group> {
-    let chunks = by_chunks(ghosts, &weighed.weights, |ghosts| {
+pub(super) fn group(ghosts: &[Ghost], weights: &[f64]) -> Vec<Group> {
+    let chunks = by_chunks(ghosts, weights, |ghosts| {
         let (mut slots, mut groups) = (Slots::new(), Vec::<(Group, Vec<u32>)>::new());
         for (index, ghost, weight) in ghosts {
             let slot = slots.slot(&ghost.bell, key(&ghost.bell, ghost.size));

@@ -137,9 +137,10 @@ fn amplitudes_of(ghosts: &[Ghost]) -> (Amplitudes, Vec<u32>, DVec2) {
     let period = DVec2::new(8.0, 6.0);
     // So wide that none is dropped.
     let request = Request { period: Some(period), ..Request::new(1e-6) };
-    let mut survey = Survey::new(&Problem::new(ghosts, Frame::full(320, 36)), &request);
+    let problem = Problem::new(ghosts, Frame::full(320, 36));
+    let mut survey = Survey::new(&problem, &request);
     let counts = terms::rectangle(&mut survey.groups, [12, 8]);
-    let amplitudes = Amplitudes::new(ghosts, &survey.groups, &counts, period, [1.0; 3]);
+    let amplitudes = Amplitudes::new(&problem, &survey.groups, &counts, period, [1.0; 3]);
     (amplitudes, counts, period)
 }
 
@@ -322,13 +323,14 @@ fn modes_of_gathered_gaussians_are_those_of_each_by_itself() {
             ghost([3.0 * x - 1.5, 2.0 * y - 1.0], [0.2 + 0.07 * t, 0.15 + 0.0525 * t])
         })
         .collect();
-    let survey = Survey::new(&Problem::new(&ghosts[..], Frame::full(64, 36)), &Request::new(1e-3));
+    let problem = Problem::new(&ghosts[..], Frame::full(64, 36));
+    let survey = Survey::new(&problem, &Request::new(1e-3));
     let (period, counts) = (DVec2::new(6.0, 4.5), [12, 12, 11, 10, 8, 5, 2]);
     let of = |transform: Transform| {
         let group = |group: &Group| Group { degree: [6, 11], transform, ..group.clone() };
         let groups: Vec<Group> = survey.groups.iter().map(group).collect();
         assert!(groups.iter().all(|group| group.proportional));
-        amplitudes::modes(&ghosts, &groups, &counts, period, survey.weighed.scale)
+        amplitudes::modes(&problem, &groups, &counts, period, survey.weighed.scale)
     };
     let cells = Cells { counts: [9, 14], orders: [14, 14] };
     let (each, gathered) = (of(Transform::Dispatch), of(Transform::Gather(Gathering { cells, sizes: 10 })));

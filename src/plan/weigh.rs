@@ -31,7 +31,9 @@ pub(super) struct Weighed {
     pub peaks: Vec<[i32; 2]>,
     /// For each ghost its peak in units of the scale, the strongest colour; 0 for those that are dropped.
     pub weights: Vec<f64>,
-    /// The sum of the weights.
+    /// For each image of the photo what it would be at its brightest, were all of its light at one place.
+    pub images: Vec<f64>,
+    /// The sum of the weights, those of images too.
     pub weight: f64,
     /// For each ghost how far the nearest pixel is from its centre, in sizes.
     pub nearest: Arc<Vec<DVec2>>,
@@ -51,6 +53,15 @@ pub(crate) fn weight(ghost: &Ghost, scale: [f64; 3]) -> [f64; 3] {
 
 /// Weighs the ghosts against the picture.
 pub(super) fn weigh(problem: &Problem, tolerance: f64) -> Weighed {
+    weigh_by(problem, tolerance, None)
+}
+
+/// The same in a unit that is known.
+pub(super) fn weigh_in(problem: &Problem, tolerance: f64, scale: [f64; 3]) -> Weighed {
+    weigh_by(problem, tolerance, Some(scale))
+}
+
+fn weigh_by(problem: &Problem, tolerance: f64, known: Option<[f64; 3]>) -> Weighed {
     let (ghosts, frame) = (problem.ghosts(), problem.frame());
     let seen = |ghost: &Ghost| {
         let offset = nearest_offset(ghost, frame);
@@ -64,7 +75,7 @@ pub(super) fn weigh(problem: &Problem, tolerance: f64) -> Weighed {
     let (nearest, shares): (Vec<DVec2>, Vec<f64>) = ghosts.par_iter().map(seen).unzip();
     let peaks = probes(ghosts, &shares, frame);
     let points: Vec<DVec2> = peaks.iter().map(|&[i, j]| frame.position(f64::from(i), f64::from(j))).collect();
-    let scale = scale(ghosts, &shares, &points, tolerance);
+    let scale = known.unwrap_or_else(|| scale(ghosts, &shares, &points, tolerance));
     let weighed = |(ghost, share): (&Ghost, &f64)| {
         let weight = peak_weight(ghost, scale);
         (weight, weight * share)
@@ -72,7 +83,8 @@ pub(super) fn weigh(problem: &Problem, tolerance: f64) -> Weighed {
     let (mut weights, reached): (Vec<f64>, Vec<f64>) = ghosts.par_iter().zip(&shares).map(weighed).unzip();
     let (dropped, dropped_error) = drop_faint(&mut weights, &reached, share::DROPPED * tolerance);
     let weight = weights.iter().sum();
-    Weighed { scale, peaks, weights, weight, nearest: Arc::new(nearest), dropped, dropped_error }
+    let images = Vec::new();
+    Weighed { scale, peaks, weights, images, weight, nearest: Arc::new(nearest), dropped, dropped_error }
 }
 
 /// The unit of each colour: the largest value found.
@@ -133,7 +145,7 @@ pub(super) fn along(shape: &dyn Shape, distance: f64) -> f64 {
     if distance < 0.01 * shape.ends().min(1.0) { 1.0 } else { shape.along(distance, 1.0) }
 }
 
-fn peak_weight(ghost: &Ghost, scale: [f64; 3]) -> f64 {
+pub(super) fn peak_weight(ghost: &Ghost, scale: [f64; 3]) -> f64 {
     ghost.radiance.iter().zip(scale).map(|(radiance, scale)| radiance.abs() / scale).fold(0.0, f64::max)
 }
 

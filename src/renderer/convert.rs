@@ -11,7 +11,7 @@ use crate::gpu::layout::{
     SpectralGhost,
 };
 use crate::plan::{self, Evaluator, Group, Layer, Mode, Modes, Plan, Precision, Series};
-use crate::scene::Ghost;
+use crate::scene::{Ghost, Knee};
 use crate::series::{Bell, Distinct, Profile, phase};
 
 // A profile that is not given at its centre has a row more.
@@ -72,7 +72,8 @@ pub(super) fn bells<'a>(groups: impl IntoIterator<Item = &'a Group>) -> Bells {
 /// The composite that the settings ask for, of so many layers that are laid over the photo.
 pub(super) fn variant(source: Source, settings: &Settings, layers: usize) -> Variant {
     let (take_light, straight) = (settings.light_gain != [1.0; 3], settings.emission.straight);
-    Variant { source, normalize: normalize(settings), take_light, straight, layers }
+    let soft = settings.knee.is_some();
+    Variant { source, normalize: normalize(settings), take_light, soft, straight, layers }
 }
 
 /// How values become glare.
@@ -169,7 +170,7 @@ pub(super) fn uniforms(plan: &Plan, settings: &Settings) -> Composite {
         luminance: rgb(settings.emission.weights.map(f64::from), settings.threshold),
         strength: settings.strength as f32,
         flat: (2.0 * plan.predicted.single() * plan.scale.iter().fold(0.0, |a: f64, &b| a.max(b))) as f32,
-        pad: [0.0; 2],
+        knee: settings.knee.map_or([0.0; 2], |Knee { threshold, width }| [threshold, width].map(|value| value as f32)),
         overlay: settings.overlay.map(|weights| rgb(weights, 0.0)),
     }
 }

@@ -1,7 +1,7 @@
 //! What a person sets about the picture.
 
 use crate::choices::Normalize;
-use crate::scene::Emission;
+use crate::scene::{Emission, Knee};
 use crate::{Error, Result};
 
 /// The brightest glare: some way below what f32 ends at, because a field's largest value is known at some pixels only.
@@ -21,6 +21,8 @@ pub struct Settings {
     pub light_gain: [f64; 3],
     /// The luminance from which on a pixel is a light.
     pub threshold: f64,
+    /// Where every pixel is a light, what of it is, instead of all from a threshold on.
+    pub knee: Option<Knee>,
     /// How a pixel of the photo gives light.
     pub emission: Emission,
     /// What each layer that [`Picture::lay_over`](super::Picture::lay_over) was given is multiplied by, RGB; 0 where there is none.
@@ -35,6 +37,7 @@ impl Default for Settings {
             constant: [0.0; 3],
             light_gain: [1.0; 3],
             threshold: f64::INFINITY,
+            knee: None,
             emission: [0.2126, 0.7152, 0.0722].into(),
             overlay: [[0.0; 3]; 4],
         }
@@ -82,7 +85,8 @@ impl Settings {
     /// picture made smaller needs no picture then.
     pub fn is_affine(&self) -> bool {
         // All fields by name: one that is added has to say what it does to means.
-        let Self { strength: _, normalize, constant: _, light_gain, threshold: _, emission: _, overlay: _ } = *self;
+        let Self { strength: _, normalize, constant: _, light_gain, threshold: _, knee: _, emission: _, overlay: _ } =
+            *self;
         normalize != Normalize::Clamp && light_gain == [1.0; 3]
     }
 }

@@ -1,5 +1,9 @@
 //! How much light a pixel of a photo gives: what everything goes by that tells light from the rest.
 
+use std::borrow::Cow;
+
+use rayon::prelude::*;
+
 use crate::photo::{Alpha, Photo};
 
 /// How the numbers of a pixel become luminance. `shared/emission.glsl` has the same.
@@ -32,6 +36,18 @@ impl Emission {
         let given = if finite && sum > 0.0 { sum.min(f32::MAX) * self.share(pixel) } else { 0.0 };
         // A device may take what is below the smallest normal number for nothing.
         if given >= f32::MIN_POSITIVE { given } else { 0.0 }
+    }
+
+    /// Pixels by what they give of their colour.
+    pub fn given<'a>(&self, pixels: &'a [[f32; 4]]) -> Cow<'a, [[f32; 4]]> {
+        if !self.straight {
+            return Cow::Borrowed(pixels);
+        }
+        let given = |&pixel: &[f32; 4]| {
+            let share = self.share(&pixel);
+            pixel.map(|value| value * share)
+        };
+        pixels.par_iter().map(given).collect::<Vec<_>>().into()
     }
 
     /// The share of a pixel's colour that it gives, 0 to 1.

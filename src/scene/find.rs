@@ -9,6 +9,7 @@ use std::collections::HashMap;
 
 use glam::{DVec2, I64Vec2};
 
+use super::Knee;
 use super::Light;
 use super::emission::Emission;
 use super::lit::Lit;
@@ -30,6 +31,16 @@ pub struct FindOptions {
     /// A single pixel that is more than so many times as bright as the brightest of its neighbours is a firefly: no light,
     /// and nothing that the threshold goes by. At least 1; 0 takes every pixel as it is.
     pub firefly_limit: f64,
+    /// Where every pixel is a source, and there is a threshold: how far below and above it pixels begin to shine and shine in full;
+    /// see [`Knee`].
+    pub knee: f64,
+}
+
+impl FindOptions {
+    /// What of each pixel shines where every pixel is a source.
+    pub fn knee(&self) -> Knee {
+        self.threshold.map_or(Knee::NONE, |threshold| Knee { threshold, width: self.knee })
+    }
 }
 
 impl Default for FindOptions {
@@ -39,7 +50,7 @@ impl Default for FindOptions {
     /// pixel outshines its neighbours by more than 180; of those that a decoder had sampled without a filter, one by 900
     /// and one by 7800.
     fn default() -> Self {
-        Self { threshold: None, merge: 0.02, max_lights: 64, firefly_limit: 1000.0 }
+        Self { threshold: None, merge: 0.02, max_lights: 64, firefly_limit: 1000.0, knee: 0.0 }
     }
 }
 

@@ -51,18 +51,19 @@ pub fn ghosts(lights: &[Light], lens: &Lens, axis: DVec2) -> Vec<Ghost> {
 impl LensGhost {
     /// The ghost of one light, through a lens whose axis meets the picture at `axis`.
     pub fn of(&self, light: &Light, axis: DVec2) -> Ghost {
-        let extent = self.along * light.size;
+        let center = axis + self.along * (light.position - axis);
+        let ghost = self.image(DVec2::splat(light.size));
+        Ghost { center, radiance: std::array::from_fn(|c| light.flux[c] * ghost.radiance[c]), ..ghost }
+    }
+
+    /// The ghost of a light of flux 1 on the axis, there, whose light is so far from its centre along x and y, as a root mean square.
+    pub fn image(&self, extent: DVec2) -> Ghost {
         let shape = self.bell.shape();
         let variance = shape.variance();
-        let extent = if variance > 0.0 { extent / variance.sqrt() } else { 0.0 };
-        let size = DVec2::new(self.size.x.hypot(extent), self.size.y.hypot(extent));
+        let extent = if variance > 0.0 { self.along * extent / variance.sqrt() } else { DVec2::ZERO };
+        let size = DVec2::new(self.size.x.hypot(extent.x), self.size.y.hypot(extent.y));
         let peak = self.share / shape.integral(size);
-        Ghost {
-            bell: self.bell.clone(),
-            center: axis + self.along * (light.position - axis),
-            size,
-            radiance: std::array::from_fn(|c| light.flux[c] * self.tint[c] * peak),
-        }
+        Ghost { bell: self.bell.clone(), center: DVec2::ZERO, size, radiance: self.tint.map(|tint| tint * peak) }
     }
 }
 

@@ -6,7 +6,7 @@ use toml::Spanned;
 use super::FindOptions;
 use super::bells::Fault;
 use super::number::{Allowed, IsFactor, IsField, IsFraction, IsNotNegative, IsPositive, NotNegative, Number, plain};
-use crate::choices::{Evaluator, LengthUnit, Mix, Normalize};
+use crate::choices::{Evaluator, LengthUnit, Mix, Normalize, Sources};
 
 /// `[look]`; what is `None` is left to the command line and its defaults.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -33,6 +33,9 @@ pub struct LookSection {
     /// What the picture's width spans, in degrees.
     #[serde(default, deserialize_with = "number::<_, IsField>", skip_serializing_if = "Option::is_none")]
     pub fov: Option<f64>,
+    /// What in the photo makes ghosts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sources: Option<Sources>,
 }
 
 /// `[find]`; see [`super::FindOptions`].
@@ -52,6 +55,9 @@ pub struct FindSection {
     /// whatever it likes.
     #[serde(default, deserialize_with = "number::<_, IsFactor>", skip_serializing_if = "Option::is_none")]
     pub firefly_limit: Option<f64>,
+    /// How far about the threshold pixels begin to shine where every pixel is a source, 0 or more.
+    #[serde(default, deserialize_with = "number::<_, IsNotNegative>", skip_serializing_if = "Option::is_none")]
+    pub knee: Option<f64>,
     /// Whether the file's lights are added to those of the photo, instead of taking their place.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub add: bool,
@@ -138,6 +144,7 @@ impl FindSection {
             merge: self.merge.unwrap_or(default.merge),
             max_lights: self.max_lights.unwrap_or(default.max_lights),
             firefly_limit: self.firefly_limit.unwrap_or(default.firefly_limit),
+            knee: self.knee.unwrap_or(default.knee),
         }
     }
 }

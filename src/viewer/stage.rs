@@ -3,6 +3,7 @@
 mod show;
 
 use std::rc::Rc;
+use std::sync::Arc;
 use std::time::Instant;
 
 use super::document::Document;
@@ -17,9 +18,9 @@ use crate::gpu::{Device, Screen};
 use crate::job::{self, Known};
 use crate::look::Gathered;
 use crate::plan::Plan;
-use crate::problem::Problem;
+use crate::raster::Raster;
 use crate::renderer::{Live, Settings, View};
-use crate::scene::Goal;
+use crate::scene::{Goal, Knee};
 use crate::{Error, Result};
 
 /// The tolerance of a preview, unless the look's own is coarser: half a code of an 8-bit display is 2e-3 of white.
@@ -68,6 +69,8 @@ struct Made {
     picture: Option<(Settings, Shows)>,
     /// The light of the photo's bright pixels, for a threshold and a unit of lengths.
     bright: Option<((f64, f64), [f64; 3])>,
+    /// The light of all pixels, once it was asked for, in the unit of its frame.
+    raster: Option<(Knee, Arc<Raster>)>,
     /// The constant term of the spectrum that is there, once it was asked for.
     constant: Option<[f64; 3]>,
     /// Whether that picture was drawn; a view can often do without.
@@ -75,6 +78,16 @@ struct Made {
     /// A look that there is no picture of, and why.
     refused: Option<(Look, String)>,
     preview: bool,
+}
+
+impl Made {
+    /// The light of all pixels of the document's photo as a look has it, on a frame.
+    fn raster(&mut self, document: &Document, look: &Look, frame: &Frame) -> Arc<Raster> {
+        let knee = look.find.knee();
+        let made = self.raster.take().filter(|(made, raster)| *made == knee && raster.frame() == *frame);
+        let made = made.unwrap_or_else(|| (knee, look.raster(&document.photo, frame)));
+        self.raster.insert(made).1.clone()
+    }
 }
 
 /// What the canvas shows: a view, of which picture.
@@ -168,7 +181,8 @@ impl Stage {
         let (known, frame) = (document.known_look(), document.frame.in_units_of(whole.unit));
         self.veiling.ask(number, document, frame, &known, shows == Shows::Glare)?;
         if work >= Work::Ghosts {
-            self.made.scene = Some(look.gather_from(Some(document.found.clone())));
+            let images = look.images(|| self.made.raster(document, look, &whole));
+            self.made.scene = Some(Gathered { images, ..look.gather_from(Some(document.found.clone())) });
         }
         let Some(scene) = &self.made.scene else { return Ok(()) };
         let bright = &mut self.made.bright;
@@ -222,7 +236,7 @@ impl Stage {
         let Some(scene) = &self.made.scene else { return Ok(()) };
         let started = Instant::now();
         let device = self.live.picture.field.device().info();
-        let problem = Problem::new(scene.ghosts.clone(), frame);
+        let problem = scene.problem(frame);
         let planned = job::plan(&look.accuracy, &problem, Some(device), self.known.clone())?;
         self.times.plan = started.elapsed().as_secs_f64() * 1e3;
         let started = Instant::now();

@@ -24,6 +24,7 @@ mod units;
 mod veil;
 mod veil_told;
 mod view;
+mod whole;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

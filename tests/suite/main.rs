@@ -46,4 +46,5 @@ mod viewer_fuzz;
 mod viewer_lost;
 mod viewer_panels;
 mod viewer_scale;
+mod whole;
 mod window;

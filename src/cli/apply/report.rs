@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::job::Job;
 use crate::certificate::Certificate;
-use crate::choices::{LengthUnit, Mix, Normalize};
+use crate::choices::{LengthUnit, Mix, Normalize, Sources};
 use crate::cli::lights::FirefliesJson;
 use crate::cli::plan::CostModelReport;
 use crate::gpu::{Info, PassTime};
@@ -96,6 +96,7 @@ struct SceneReport<'a> {
     lights_dropped: Option<usize>,
     fireflies: Option<FirefliesJson>,
     lights: Vec<LightReport>,
+    sources: Sources,
     ghosts: usize,
 }
 
@@ -218,6 +219,7 @@ fn scene_report(scene: &Gathered, axis: DVec2) -> SceneReport<'_> {
                 muted,
             })
             .collect(),
-        ghosts: scene.ghosts.len(),
+        sources: scene.sources(),
+        ghosts: scene.count(),
     }
 }

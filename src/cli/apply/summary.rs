@@ -101,8 +101,18 @@ fn about_scene(out: &mut dyn Write, scene: &Gathered, look: &Look) -> io::Result
             }
         }
         _ if !scene.lights.is_empty() => writeln!(out, "lights   {}, as listed{muted}", scene.lights.len())?,
-        _ if scene.ghosts.is_empty() => writeln!(out, "lights   none are listed, so no glare")?,
+        _ if scene.is_dark() => writeln!(out, "lights   none are listed, so no glare")?,
         _ => {}
+    }
+    if let Some(images) = &scene.images {
+        writeln!(out, "sources  {} pixels", images.raster().pixels())?;
+        if let Some(lens) = &scene.lens {
+            writeln!(out, "lens     {}: {} ghosts of each pixel", lens.name, images.all().len())?;
+        }
+        return match scene.ghosts.len() {
+            0 => Ok(()),
+            others => writeln!(out, "ghosts   {others} more"),
+        };
     }
     match &scene.lens {
         Some(lens) => writeln!(out, "lens     {}: {} ghosts in all", lens.name, scene.ghosts.len()),

@@ -241,7 +241,10 @@ fn line(out: &mut dyn Write, job: &Job<'_, Done<'_>>) -> io::Result<()> {
     if let Some(found) = &scene.found {
         write!(out, "{} lights at {:.4} and above, ", scene.lights.len(), found.threshold)?;
     }
-    write!(out, "{} ghosts, ", scene.ghosts.len())?;
+    match &scene.images {
+        Some(images) => write!(out, "{} ghosts of each pixel, ", images.all().len())?,
+        None => write!(out, "{} ghosts, ", scene.ghosts.len())?,
+    }
     if let Some(Computed { planning, certificate, .. }) = &job.work.computed {
         write!(out, "{}, error {:.1e}, ", planning.plan.evaluator(), certificate.measured)?;
     }

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::found;
+use crate::choices::Sources;
 use crate::frame::Frame;
 use crate::gpu::{Device, Info};
 use crate::job::{self, Planning, VeilPlanned};
@@ -18,7 +19,6 @@ use crate::options::ReadArgs;
 use crate::options::SceneArgs;
 use crate::options::VeilArgs;
 use crate::plan::{CostModel, Plan};
-use crate::problem::Problem;
 use crate::terminal::stderr::warn;
 use crate::terminal::stdout;
 use crate::{Result, photo};
@@ -90,8 +90,7 @@ pub fn run(args: &Args) -> Result<()> {
     let frame = args.size.map_or(whole, |[width, height]| whole.resized(width, height));
     let device = Device::open(args.accuracy.backend.backends()).ok();
     let info = device.as_ref().map(|device| device.info());
-    let planned =
-        job::plan(&look.accuracy, &Problem::new(scene.ghosts.clone(), frame), info, args.accuracy.known(info))?;
+    let planned = job::plan(&look.accuracy, &scene.problem(frame), info, args.accuracy.known(info))?;
     warn(&planned.warnings);
     let veil = job::plan_veil(&look, &photo, &frame)?;
     let budget = look.accuracy.goal.budget();
@@ -120,6 +119,10 @@ impl Told<'_> {
             aspect => writeln!(out, ", {aspect:.4} times as wide as high")?,
         }
         match &self.scene.lens {
+            Some(lens) if let Some(images) = &self.scene.images => {
+                let (pixels, ghosts) = (images.raster().pixels(), self.scene.count());
+                writeln!(out, "scene    {pixels} pixels through {}: {ghosts} ghosts", lens.name)?;
+            }
             Some(lens) => {
                 let (lights, ghosts) = (self.scene.lights.len(), self.scene.ghosts.len());
                 writeln!(out, "scene    {lights} lights through {}: {ghosts} ghosts", lens.name)?;
@@ -162,7 +165,8 @@ impl Told<'_> {
             photo: self.photo.display().to_string(),
             size: [self.frame.window.width, self.frame.window.height],
             lights: self.scene.lights.len(),
-            ghosts: self.scene.ghosts.len(),
+            sources: self.scene.sources(),
+            ghosts: self.scene.count(),
             plan: &self.planned.plan,
             veil: self.veil.as_ref(),
             predicted_total: self.planned.plan.predicted.total(),
@@ -184,6 +188,7 @@ struct Json<'a> {
     photo: String,
     size: [u32; 2],
     lights: usize,
+    sources: Sources,
     ghosts: usize,
     plan: &'a Plan,
     veil: Option<&'a VeilPlanned>,

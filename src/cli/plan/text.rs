@@ -4,6 +4,7 @@ use std::io::{self, Write};
 
 use crate::job::{Planning, VeilPlanned, VeilSeen};
 use crate::plan::{Cost, Evaluator, Gathering, Group, Plan, Source, Transform};
+use crate::raster::Reduction;
 use crate::series::moments::Cells;
 
 /// Groups that are told one by one.
@@ -118,6 +119,12 @@ fn groups(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
             Transform::Direct if evaluator == Evaluator::Local => writeln!(out, ", summed where they reach")?,
             Transform::Direct => writeln!(out, ", summed directly")?,
             Transform::Dispatch => writeln!(out, ", degree {n} x {m}")?,
+            Transform::Photo(Reduction { level: 0, .. }) => {
+                writeln!(out, ", degree {n} x {m}, from the photo's pixels")?
+            }
+            Transform::Photo(Reduction { points: [x, y], .. }) => {
+                writeln!(out, ", degree {n} x {m}, from the photo's moments on {x} x {y} points")?;
+            }
             Transform::Gather(Gathering { cells: Cells { counts: [x, y], orders: [p, q] }, sizes }) => {
                 write!(out, ", degree {n} x {m}, gathered in {x} x {y} cells of {p} x {q} moments")?;
                 let sizes = if sizes == 1 { String::new() } else { format!(" for each of {sizes} sizes") };

@@ -93,11 +93,11 @@ fn shaders_read_the_uniforms_of_the_composite_as_they_are_written() {
         luminance: [13.0, 14.0, 15.0, 16.0],
         strength: 17.0,
         flat: 18.0,
-        pad: [19.0, 20.0],
+        knee: [19.0, 20.0],
         overlay: columns(21),
     };
     let vectors = [("scale", 1..=4), ("constant", 5..=8), ("light_gain", 9..=12), ("luminance", 13..=16)];
-    let rest = [("strength", 17..=17), ("flat_span", 18..=18), ("overlay_weights", 21..=32)];
+    let rest = [("strength", 17..=17), ("flat_span", 18..=18), ("knee", 19..=20), ("overlay_weights", 21..=32)];
     let given = [&vectors[..], &rest].concat();
     held(&["composite.frag"], BLOCK, value, &given);
 }

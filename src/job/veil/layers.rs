@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::account::Loss;
 use super::planning::Held;
-use super::{Ledger, Seat, check, coarse, computed, failed, ledger, light, raised, seated, terms, weighed};
+use super::{Ledger, Seat, check, coarse, computed, failed, ledger, light, raised, seated, terms};
 use crate::Result;
 use crate::frame::Frame;
 use crate::look::{Look, Veil as Wanted};
@@ -70,8 +70,7 @@ impl VeilSums {
     /// # Panics
     /// If there are not as many pixels as the frame had.
     pub fn compute(&self, emission: Emission, pixels: &[[f32; 4]]) -> Result<VeilLayers> {
-        let weighed = weighed(emission, pixels);
-        let (pixels, seat) = (weighed.as_deref().unwrap_or(pixels), self.seat);
+        let (pixels, seat) = (&*emission.given(pixels), self.seat);
         let stored = veil::Photo::rgba(pixels.as_flattened(), seat.stored).map_err(failed)?;
         let filled = seat.filled(pixels);
         let sources = veil::Photo::rgba(filled.as_flattened(), seat.size).map_err(failed)?;

@@ -101,8 +101,7 @@ pub(super) fn cast(
 ) -> Result<Option<Cast>> {
     let Some(wanted) = look.veil.as_ref().filter(|_| look.strength != 0.0) else { return Ok(None) };
     let Prepared { view, seat, channels, asked } = prepared(look, wanted, photo, frame, stages)?;
-    let weighed = weighed(Emission::of(photo), &photo.pixels);
-    let pixels = weighed.as_ref().unwrap_or(&photo.pixels);
+    let pixels = &*Emission::of(photo).given(&photo.pixels);
     let stored = veil::Photo::rgba(pixels.as_flattened(), seat.stored).map_err(failed)?;
     let filled = seat.filled(pixels);
     let sources = veil::Photo::rgba(filled.as_flattened(), seat.size).map_err(failed)?;
@@ -209,17 +208,6 @@ fn failed(error: veil::Error) -> Error {
         veil::Error::Geometry(reason) => Error::Usage(reason),
         error => Error::Plan(error.to_string()),
     }
-}
-
-/// Pixels by their share of the light, where straight alpha makes that another than all.
-fn weighed(emission: Emission, pixels: &[[f32; 4]]) -> Option<Vec<[f32; 4]>> {
-    emission.straight.then(|| {
-        let share = |&pixel: &[f32; 4]| {
-            let share = emission.share(&pixel);
-            pixel.map(|value| value * share)
-        };
-        pixels.par_iter().map(share).collect()
-    })
 }
 
 /// How the veil is summed, in a word for each way that a channel of it is.

@@ -1,5 +1,5 @@
 use super::*;
-use crate::choices::{Evaluator, LengthUnit, Mix, Normalize};
+use crate::choices::{Evaluator, LengthUnit, Mix, Normalize, Sources};
 use crate::scene::Goal;
 use crate::series::Bell;
 
@@ -378,8 +378,8 @@ fn a_look_is_read_key_by_key() {
     let (_folder, path) = file(
         "look.toml",
         "preset = \"zoom\"\naxis = [0.1, -2]\nlight = []\n[look]\nstrength = 0\nsize = 2\ntint = [1, 0, 2.5]\n\
-         mix = \"energy\"\nnormalize = \"minmax\"\nunit = \"short-side\"\nfov = 40\n[find]\nthreshold = 20\nmerge = 0\nmax_lights = 3\n\
-         firefly_limit = 0\nadd = true\n\
+         mix = \"energy\"\nnormalize = \"minmax\"\nunit = \"short-side\"\nfov = 40\nsources = \"photo\"\n[find]\nthreshold = 20\nmerge = 0\nmax_lights = 3\n\
+         firefly_limit = 0\nknee = 0.5\nadd = true\n\
          [accuracy]\nbudget = 20\nallow_floor = true\nevaluator = \"rows\"\n",
     );
     let scene = read_scene(&path).unwrap();
@@ -393,6 +393,7 @@ fn a_look_is_read_key_by_key() {
         normalize: Some(Normalize::Minmax),
         unit: Some(LengthUnit::ShortSide),
         fov: Some(40.0),
+        sources: Some(Sources::Photo),
     };
     assert_eq!(scene.look, look);
     let find = FindSection {
@@ -400,6 +401,7 @@ fn a_look_is_read_key_by_key() {
         merge: Some(0.0),
         max_lights: Some(3),
         firefly_limit: Some(0.0),
+        knee: Some(0.5),
         add: true,
     };
     assert_eq!(scene.find, find);

@@ -1,7 +1,7 @@
 use super::*;
 use crate::chance::Chance;
 use crate::choices::{Border, Projection};
-use crate::choices::{LengthUnit, Mix, Normalize};
+use crate::choices::{LengthUnit, Mix, Normalize, Sources};
 use crate::psf::{Name, Parameters};
 use crate::scene::{AccuracySection, read_scene};
 use crate::series::{Disc, SineGaussian, VonMises};
@@ -101,12 +101,14 @@ fn scene(chance: &mut Chance) -> SceneFile {
                 &[None, Some(LengthUnit::Height), Some(LengthUnit::ShortSide), Some(LengthUnit::Degrees)],
             ),
             fov: maybe(chance, |chance| chance.between(0.1, 179.0)),
+            sources: one_of(chance, &[None, Some(Sources::Photo), Some(Sources::Lights)]),
         },
         find: FindSection {
             threshold: maybe(chance, positive),
             merge: maybe(chance, positive),
             max_lights: one_of(chance, &[None, Some(0), Some(7)]),
             firefly_limit: one_of(chance, &[None, Some(0.0), Some(1.0), Some(5e3)]),
+            knee: maybe(chance, positive),
             add: one_of(chance, &[true, false]),
         },
         accuracy: AccuracySection {

@@ -35,9 +35,14 @@ pub fn work(old: &Look, new: &Look) -> Work {
         return Work::Lights;
     }
     match (&old.lights, lights) {
-        (LookLights::Listed(_), LookLights::Found | LookLights::FoundAnd(_)) => return Work::Lights,
+        (LookLights::Listed(_) | LookLights::Photo(_), LookLights::Found | LookLights::FoundAnd(_)) => {
+            return Work::Lights;
+        }
         (old, new) if old != new => return Work::Ghosts,
         _ => {}
+    }
+    if new.takes_photo() && old.find.knee() != new.find.knee() {
+        return Work::Ghosts;
     }
     let makes = (old.axis, old.size, old.tint) == (*axis, *size, *tint);
     if old.lens_ghosts() != new.lens_ghosts() || !makes || old.ghosts != *ghosts {

@@ -11,13 +11,13 @@ use crate::series::Bell;
 const PERIOD: DVec2 = DVec2::splat(4.0);
 
 impl Look {
-    /// The lights as a list to be edited, of which `found` are the photo's.
+    /// The lights as a list to be edited, of which `found` are the photo's; those that shine beside its pixels stay beside them.
     pub fn lights_mut(&mut self, found: &[Light]) -> &mut Vec<Light> {
-        if !matches!(self.lights, LookLights::Listed(_)) {
+        if !matches!(self.lights, LookLights::Listed(_) | LookLights::Photo(_)) {
             self.lights = LookLights::Listed(self.lights(found).into_owned().into());
         }
         match &mut self.lights {
-            LookLights::Listed(lights) => lights,
+            LookLights::Listed(lights) | LookLights::Photo(lights) => lights,
             LookLights::Found | LookLights::FoundAnd(_) => unreachable!("they are listed by now"),
         }
     }

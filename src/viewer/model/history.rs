@@ -104,7 +104,7 @@ impl History {
 fn listed(look: &Look) -> usize {
     let lights = match &look.lights {
         LookLights::Found => 0,
-        LookLights::Listed(lights) | LookLights::FoundAnd(lights) => lights.len(),
+        LookLights::Listed(lights) | LookLights::FoundAnd(lights) | LookLights::Photo(lights) => lights.len(),
     };
     lights + look.ghosts.len()
 }

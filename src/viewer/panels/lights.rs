@@ -4,6 +4,7 @@ use egui::{ScrollArea, Ui};
 use glam::DVec2;
 
 use super::{colour, ghosts};
+use crate::choices::Sources;
 use crate::scene::Light;
 use crate::viewer::control::{self, Number, button, cell, done_by, flag};
 use crate::viewer::document::Document;
@@ -23,6 +24,14 @@ const MERGE: Number = Number {
     about: "How close regions are that become one light.",
     unit: "of the look's unit",
     range: 0.0..=2.0,
+    logarithmic: true,
+};
+
+const KNEE: Number = Number {
+    name: "Knee",
+    about: "How far below and above the threshold pixels begin to shine, and shine in full.",
+    unit: "in the photo's unit",
+    range: 0.0..=1e6,
     logarithmic: true,
 };
 
@@ -92,13 +101,19 @@ pub fn show(ui: &mut Ui, document: &mut Document, _: &Stage) {
             document.look.lights = LookLights::Found;
             document.selected = None;
         }
+        if button(ui, "Every pixel", "Makes every pixel of the photo a source, beside the lights of the look's own") {
+            document.look.shine_by(Sources::Photo);
+            document.selected = None;
+        }
     });
     control::hint(
         ui,
-        match document.look.lights {
+        match &document.look.lights {
             LookLights::Found => "As they are found in the photo",
             LookLights::Listed(_) => "A list of the look's own",
             LookLights::FoundAnd(_) => "As they are found in the photo, and the look's own",
+            LookLights::Photo(lights) if lights.is_empty() => "Every pixel of the photo",
+            LookLights::Photo(_) => "Every pixel of the photo, and the look's own",
         },
     );
     let mut gone = None;
@@ -159,6 +174,7 @@ fn row(ui: &mut Ui, document: &mut Document, index: usize) -> bool {
 
 /// What counts as a light; the photo is searched anew while it is set.
 fn find(ui: &mut Ui, document: &mut Document) {
+    let whole = matches!(document.look.lights, LookLights::Photo(_));
     let (opened, found) = (document.opened.find, document.found.threshold);
     let find = &mut document.look.find;
     let mut automatic = find.threshold.is_none();
@@ -169,6 +185,9 @@ fn find(ui: &mut Ui, document: &mut Document) {
     if let Some(threshold) = &mut find.threshold {
         let row = THRESHOLD.show(ui, threshold, opened.threshold.unwrap_or(found));
         document.sets_threshold = row.attended;
+    }
+    if whole && find.threshold.is_some() {
+        KNEE.show(ui, &mut find.knee, opened.knee);
     }
     let about = "Marks the pixels that are light by now, before the photo is searched (K).";
     flag(ui, "Mask", about, &mut document.viewing.mask, false);

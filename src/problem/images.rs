@@ -1,0 +1,210 @@
+//! The ghosts that all pixels of a photo make.
+//!
+//! A ghost of a lens shows every light where `along` says, so those of all pixels are an image of the photo: scaled, blurred by the
+//! ghost's bell, and tinted.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use glam::DVec2;
+use ndarray::{Array2, Axis, concatenate, s};
+use rayon::prelude::*;
+
+use crate::raster::Raster;
+use crate::scene::{Ghost, LensGhost};
+use crate::series::Modes;
+
+/// What a pixel makes of its light.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Image {
+    /// The ghost of a pixel of flux 1 on the axis.
+    pub ghost: Ghost,
+    /// The ghost's centre is so many times as far from the axis as the pixel.
+    pub along: f64,
+}
+
+/// A photo's light, through a lens.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Images {
+    raster: Arc<Raster>,
+    axis: DVec2,
+    all: Vec<Image>,
+}
+
+/// Columns of a table of all columns of pixels: some megabytes.
+const MOST_COLUMNS: usize = 2048;
+
+/// The places of points along an axis, each once.
+struct Places {
+    axis: usize,
+    places: Vec<f64>,
+    numbers: HashMap<u64, usize>,
+}
+
+impl Places {
+    fn new(points: &[DVec2], axis: usize) -> Self {
+        let (mut places, mut numbers) = (Vec::new(), HashMap::new());
+        for point in points {
+            numbers.entry(point[axis].to_bits()).or_insert_with(|| {
+                places.push(point[axis]);
+                places.len() - 1
+            });
+        }
+        Self { axis, places, numbers }
+    }
+
+    fn of(&self, point: &DVec2) -> usize {
+        self.numbers[&point[self.axis].to_bits()]
+    }
+
+    /// What each centre has at each place.
+    fn table(&self, centres: &[f64], value: impl Fn(f64) -> f64) -> Array2<f64> {
+        Array2::from_shape_fn((centres.len(), self.places.len()), |(centre, place)| {
+            value(self.places[place] - centres[centre])
+        })
+    }
+}
+
+/// A pixel's extent over its side: the root mean square distance from the middle of a square along one axis.
+const EXTENT: f64 = 0.288_675_134_594_812_9;
+
+impl Images {
+    /// Of a lens whose axis meets the picture at `axis`; every ghost `scale` times as large, and `tint` its colour. A pixel is a
+    /// light of its own size, as the rule for lights has it.
+    pub fn new(raster: Arc<Raster>, lens: &[LensGhost], axis: DVec2, scale: f64, tint: [f64; 3]) -> Self {
+        let extent = EXTENT * raster.frame().pixel_sides();
+        let image = |lens: &LensGhost| {
+            let ghost = lens.image(extent);
+            let ghost = if scale == 1.0 { ghost } else { ghost.scaled(scale) };
+            let radiance = [0, 1, 2].map(|colour| ghost.radiance[colour] * tint[colour]);
+            Image { ghost: Ghost { center: axis, radiance, ..ghost }, along: lens.along }
+        };
+        let shines = |image: &Image| image.ghost.radiance != [0.0; 3];
+        let dark = raster.flux() == [0.0; 3];
+        let all = if dark { Vec::new() } else { lens.iter().map(image).filter(shines).collect() };
+        Self { raster, axis, all }
+    }
+
+    /// The photo.
+    pub fn raster(&self) -> &Raster {
+        &self.raster
+    }
+
+    /// Where the lens's axis meets the picture.
+    pub fn axis(&self) -> DVec2 {
+        self.axis
+    }
+
+    /// One for each ghost of the lens.
+    pub fn all(&self) -> &[Image] {
+        &self.all
+    }
+
+    /// The ghost that an image would be if all of the photo's light came from the axis: no value of the image is beyond its peak.
+    pub fn gathered(&self, image: &Image) -> Ghost {
+        let flux = self.raster.flux();
+        let radiance = [0, 1, 2].map(|colour| image.ghost.radiance[colour] * flux[colour]);
+        Ghost { radiance, ..image.ghost.clone() }
+    }
+
+    /// Between which places the centres of an image's ghosts lie.
+    pub fn centres(&self, image: &Image) -> [DVec2; 2] {
+        let (low, high) = self.raster.frame().bounds();
+        let [one, other] = [low, high].map(|corner| self.axis + image.along * (corner - self.axis));
+        [one.min(other), one.max(other)]
+    }
+
+    /// What of each colour's flux the ghosts carry in all.
+    pub fn share(&self) -> [f64; 3] {
+        self.all.iter().fold([0.0; 3], |sum, image| {
+            let flux = image.ghost.flux();
+            [0, 1, 2].map(|colour| sum[colour] + flux[colour])
+        })
+    }
+
+    /// Whether all bells are products of one for each axis.
+    pub fn are_products(&self) -> bool {
+        self.all.iter().all(|image| matches!(image.ghost.bell.shape().modes(), Modes::Product(_)))
+    }
+
+    /// The sum over all pixels and all ghosts at these points, every bell evaluated: no waves, no moments.
+    pub fn at(&self, points: &[DVec2]) -> Vec<[f64; 3]> {
+        let is_product = |image: &&Image| matches!(image.ghost.bell.shape().modes(), Modes::Product(_));
+        let (products, others): (Vec<&Image>, Vec<&Image>) = self.all.iter().partition(is_product);
+        let mut sums = self.of_products(&products, points);
+        for image in others {
+            for (sum, added) in sums.iter_mut().zip(self.one_by_one(image, points)) {
+                [0, 1, 2].into_iter().for_each(|colour| sum[colour] += image.ghost.radiance[colour] * added[colour]);
+            }
+        }
+        sums
+    }
+
+    /// Of bells that are products along x and y: over columns and rows apart, for all points that share them.
+    fn of_products(&self, images: &[&Image], points: &[DVec2]) -> Vec<[f64; 3]> {
+        let [xs, ys] = [Places::new(points, 0), Places::new(points, 1)];
+        let mut sums = vec![[0.0; 3]; points.len()];
+        // As many at once as the tables of have room.
+        let at_once = (MOST_COLUMNS / xs.places.len().max(1)).max(1);
+        for images in images.chunks(at_once) {
+            let tables: Vec<[Array2<f64>; 2]> = images
+                .par_iter()
+                .map(|image| {
+                    let (shape, size) = (image.ghost.bell.shape(), image.ghost.size);
+                    let peak = shape.value(DVec2::ZERO, size);
+                    let [columns, rows] = self.centres_of_pixels(image);
+                    let across = xs.table(&columns, |x| shape.value(DVec2::new(x, 0.0), size));
+                    [across, ys.table(&rows, |y| shape.value(DVec2::new(0.0, y), size) / peak)]
+                })
+                .collect();
+            let across: Vec<_> = tables.iter().map(|[across, _]| across.view()).collect();
+            let across = concatenate(Axis(1), &across).expect("all tables have a row for each column of pixels");
+            let along = self.raster.along_rows(across.view());
+            for (number, (image, [_, down])) in images.iter().zip(&tables).enumerate() {
+                let mine = number * xs.places.len()..(number + 1) * xs.places.len();
+                for (colour, along) in along.iter().enumerate() {
+                    let values = along.slice(s![.., mine.clone()]).t().dot(down);
+                    for (sum, point) in sums.iter_mut().zip(points) {
+                        sum[colour] += image.ghost.radiance[colour] * values[(xs.of(point), ys.of(point))];
+                    }
+                }
+            }
+        }
+        sums
+    }
+
+    /// Of any other: pixel by pixel, but for those whose bell ends before the point.
+    fn one_by_one(&self, image: &Image, points: &[DVec2]) -> Vec<[f64; 3]> {
+        let (shape, size) = (image.ghost.bell.shape(), image.ghost.size);
+        let [columns, rows] = self.centres_of_pixels(image);
+        let ends = shape.ends() * size;
+        let at = |point: &DVec2| {
+            let near = |centres: &[f64], place: f64, end: f64| -> Vec<usize> {
+                (0..centres.len()).filter(|at| (centres[*at] - place).abs() <= end).collect()
+            };
+            let (across, down) = (near(&columns, point.x, ends.x), near(&rows, point.y, ends.y));
+            let mut sum = [0.0; 3];
+            for &row in &down {
+                for &column in &across {
+                    let value = shape.value(*point - DVec2::new(columns[column], rows[row]), size);
+                    if value != 0.0 {
+                        let light = self.raster.light(column, row);
+                        [0, 1, 2].into_iter().for_each(|colour| sum[colour] += light[colour] * value);
+                    }
+                }
+            }
+            sum
+        };
+        points.par_iter().map(at).collect()
+    }
+
+    /// The centres of an image's ghosts of all columns of pixels, and of all rows.
+    fn centres_of_pixels(&self, image: &Image) -> [Vec<f64>; 2] {
+        let places = self.raster.places();
+        let [columns, rows] = [0, 1].map(|axis| {
+            let middle = self.axis[axis] + image.along * (places.middle[axis] - self.axis[axis]);
+            places.from_middle[axis].iter().map(|place| middle + image.along * place).collect()
+        });
+        [columns, rows]
+    }
+}

@@ -1,0 +1,65 @@
+//! Every pixel as a source, from the command line.
+
+use serde_json::json;
+
+use super::Workplace;
+
+const LENS: &str = "[[lens_ghost]]\nalong = -0.5\nsize = 0.4\ntint = [1.0, 0.5, 0.25]\nshare = 0.125\n";
+
+/// Of the photo of [`Workplace::photo`].
+const PIXELS: usize = 96 * 64;
+
+#[test]
+fn a_file_and_an_option_take_the_whole_photo_and_the_report_says_so() {
+    let place = Workplace::new();
+    place.photo("in.exr");
+    place.text("lens.toml", LENS);
+    place.text("look.toml", &format!("{LENS}[look]\nunit = \"short-side\"\nsources = \"photo\"\n"));
+    let apply = |options: &[&str]| {
+        let mut args =
+            vec!["apply", "in.exr", "-o", "out.exr", "--force", "--no-calibration", "--report", "report.json"];
+        args.extend(options);
+        let said = place.vglare(&args).succeeded().stdout();
+        (std::fs::read(place.path("out.exr")).expect("the picture"), place.read_json("report.json"), said)
+    };
+    let (by_option, report, said) = apply(&["--lens", "lens.toml", "--sources", "photo"]);
+    let (by_file, ..) = apply(&["--scene", "look.toml"]);
+    assert!(by_option == by_file);
+    assert_eq!(report["scene"]["sources"], json!("photo"));
+    assert_eq!(report["scene"]["ghosts"], json!(PIXELS));
+    let (predicted, measured) = (report["error"]["predicted"].as_f64(), report["error"]["measured"].as_f64());
+    assert!(measured <= predicted && predicted <= Some(1e-3), "{measured:?} {predicted:?}");
+    assert!(said.contains(&format!("{PIXELS} pixels")), "{said}");
+    let (by_lights, report, _) = apply(&["--lens", "lens.toml", "--sources", "lights"]);
+    assert!(by_lights != by_option && report["scene"]["sources"] == json!("lights"));
+    let warned = place.vglare(&[
+        "apply",
+        "in.exr",
+        "-o",
+        "out.exr",
+        "--force",
+        "--sources",
+        "photo",
+        "--lens",
+        "lens.toml",
+        "--max-lights",
+        "3",
+    ]);
+    assert!(warned.succeeded().stderr().contains("change nothing where every pixel is a source"));
+}
+
+#[test]
+fn what_contradicts_the_whole_photo_is_refused() {
+    let place = Workplace::new();
+    place.photo("in.exr");
+    place.text("lens.toml", LENS);
+    place.text("lights.toml", "[[light]]\nposition = [0, 0]\nflux = [1, 1, 1]\n");
+    let refused = |code: i32, options: &[&str], expected: &str| {
+        let mut args = vec!["apply", "in.exr", "-o", "out.exr", "--sources", "photo", "--lens", "lens.toml"];
+        args.extend(options);
+        place.vglare(&args).failed(code, &[expected]);
+        assert!(!place.path("out.exr").exists());
+    };
+    refused(2, &["--lights", "lights.toml"], "cannot be used with");
+    refused(1, &["--evaluator", "direct"], "give --sources lights");
+}
