@@ -13,6 +13,7 @@ mod report;
 pub(in crate::laboratory) mod scenes;
 mod stage;
 mod veil;
+mod whole;
 
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -85,8 +86,12 @@ pub struct Args {
     #[arg(long, conflicts_with_all = ["gaussians", "scenes", "local", "digits"])]
     veil: bool,
 
+    /// Measure nothing but ghosts of all pixels: their spectrum, and their field against a copy
+    #[arg(long, conflicts_with_all = ["gaussians", "scenes", "local", "digits", "veil"])]
+    whole: bool,
+
     /// Measure nothing but frames of the window, without a window: a slider and a light that are dragged
-    #[arg(long, conflicts_with_all = ["gaussians", "scenes", "local", "digits", "veil", "rounds", "quick"])]
+    #[arg(long, conflicts_with_all = ["gaussians", "scenes", "local", "digits", "veil", "whole", "rounds", "quick"])]
     viewer: bool,
 
     /// Write the rows of all tables to this file too
@@ -121,6 +126,7 @@ Examples:
   vglare bench --scenes 200 --size 480x270  How good are the plan's choices and its predictions?
   vglare bench --digits --strict            What do the digits beyond 32-bit floats cost?
   vglare bench --veil                       What does a veil cost?
+  vglare bench --whole                      What do the ghosts of all pixels cost?
   vglare bench --viewer --strict            Are drags in the window fluent here?";
 
 fn part(text: &str) -> Result<f64, String> {
@@ -202,6 +208,10 @@ fn measure(args: &Args, window: Window) -> Result<Report> {
         veil::against_a_copy(&stage, &mut report)?;
         return Ok(report);
     }
+    if args.whole {
+        whole::against_a_copy(&stage, &mut report)?;
+        return Ok(report);
+    }
     if args.viewer {
         window(stage.shared_device(), size, &mut report)?;
         return Ok(report);
@@ -211,6 +221,7 @@ fn measure(args: &Args, window: Window) -> Result<Report> {
     local::against_a_copy(&stage, &mut report)?;
     digits::in_doubles(&stage, &mut report)?;
     veil::against_a_copy(&stage, &mut report)?;
+    whole::against_a_copy(&stage, &mut report)?;
     many::ghosts(&stage, &mut report, args.quick)?;
     if !args.quick {
         cases::rows_and_series(&stage, &mut report)?;

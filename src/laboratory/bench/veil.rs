@@ -106,7 +106,7 @@ fn evaluated(plan: &Plan, photo: &veil::Photo<'_>) -> Result<()> {
 }
 
 /// A dim picture with some bright pixels, the same every time.
-fn photo([width, height]: [usize; 2]) -> Vec<[f32; 4]> {
+pub(super) fn photo([width, height]: [usize; 2]) -> Vec<[f32; 4]> {
     let mut chance = Chance::new(1);
     let mut pixel = |_| {
         let bright = if chance.between(0.0, 1.0) < 1e-4 { 1e4 } else { 1.0 };
