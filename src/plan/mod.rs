@@ -184,7 +184,8 @@ fn attempt_with(
     if let Some(evaluator) = asked.evaluator.filter(|evaluator| !evaluator.is_series()) {
         let (pixels, each) = (images.raster().pixels(), images.all().len());
         return Err(Error::Plan(format!(
-            "the ghosts of all pixels are {pixels} times {each}, which a series adds up and {evaluator} cannot; give --sources lights, or              another evaluator"
+            "the ghosts of all pixels are {pixels} times {each}, which a series adds up and {evaluator} cannot; give --sources lights, or \
+             another evaluator"
         )));
     }
     let bells: Vec<Ghost> =

@@ -192,13 +192,13 @@ impl Study {
         {
             let map = error_map::Rendered::take(field, plan, frame, stride)?;
             let problem = plan.problem().clone();
-            self.error_map.begin((number, stride), &self.wake, move || map.image(problem.ghosts()));
+            self.error_map.begin((number, stride), &self.wake, move || map.image(&problem));
         }
         match wanted.plot {
             Plot::Section if self.section.wants(&(number, wanted.cut)) => {
                 let section = findings::Section::take(field, wanted.cut, frame)?;
                 let problem = plan.problem().clone();
-                let truth = move || section.beside_truth(problem.ghosts());
+                let truth = move || section.beside_truth(&problem);
                 self.section.begin((number, wanted.cut), &self.wake, truth);
             }
             Plot::Convergence if self.convergence.wants(&number) => {

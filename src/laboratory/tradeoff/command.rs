@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use comfy_table::{CellAlignment, Table, presets};
 
 use super::{Results, Subject, exponent, short};
-use crate::Result;
 use crate::gpu::Device;
 use crate::laboratory::tradeoff;
 use crate::look::Look;
@@ -20,6 +19,7 @@ use crate::photo::{self, Photo};
 use crate::terminal::progress::Progress;
 use crate::terminal::stderr::warn;
 use crate::terminal::stdout;
+use crate::{Error, Result};
 
 /// Show what accuracy costs for a photo on this machine
 ///
@@ -90,6 +90,10 @@ pub fn run(args: &Args) -> Result<()> {
     let mut look = args.veil.over(args.scene.look()?, None)?;
     args.scene.unit.check(&look)?;
     look.find = args.find.over(look.find);
+    if look.takes_photo() {
+        let reason = "tradeoff studies the ghosts of lights, and here every pixel is a source: give --sources lights";
+        return Err(Error::Usage(reason.into()));
+    }
     progress.say("reading the photo");
     let mut photo = photo::read_with(&args.photo, &args.reading.options())?;
     warn(&photo.source.notes);

@@ -6,9 +6,8 @@ use crate::Result;
 use crate::false_colour::Map;
 use crate::frame::Frame;
 use crate::plan::Plan;
-use crate::reference;
+use crate::problem::Problem;
 use crate::renderer::Field;
-use crate::scene::Ghost;
 
 /// How many decades below the tolerance the colours span.
 pub const DECADES: f64 = 4.0;
@@ -69,14 +68,12 @@ impl Rendered {
     }
 
     /// How far it is from the direct sum.
-    pub fn image(&self, ghosts: &[Ghost]) -> ColorImage {
-        let points: Vec<_> =
-            self.pixels.iter().map(|&[i, j]| self.frame.position(f64::from(i), f64::from(j))).collect();
+    pub fn image(&self, problem: &Problem) -> ColorImage {
         let worst = |(exact, value): (&[f64; 3], &[f64; 3])| {
             let off = [0, 1, 2].map(|colour| (value[colour] - exact[colour]).abs() / self.unit[colour]);
             if off.iter().any(|off| off.is_nan()) { f64::NAN } else { off.into_iter().fold(0.0, f64::max) }
         };
-        let exact = reference::direct_at(ghosts, &points);
+        let exact = problem.on(self.frame).truth(&self.pixels);
         ColorImage::new(self.size, exact.iter().zip(&self.values).map(worst).map(colour).collect())
     }
 }

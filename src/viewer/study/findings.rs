@@ -7,9 +7,8 @@ use crate::choices::Evaluator;
 use crate::false_colour::Map;
 use crate::frame::Frame;
 use crate::plan::{self, HIGHEST_DEGREE, Plan, Request};
-use crate::reference;
+use crate::problem::Problem;
 use crate::renderer::Field;
-use crate::scene::Ghost;
 
 /// The most points of a cut.
 const POINTS: u32 = 384;
@@ -74,11 +73,10 @@ impl Section {
         Ok(Self { horizontal: cut.horizontal, frame, pixels, rendered })
     }
 
-    pub fn beside_truth(&self, ghosts: &[Ghost]) -> Vec<CutPoint> {
-        let points: Vec<_> =
-            self.pixels.iter().map(|&[i, j]| self.frame.position(f64::from(i), f64::from(j))).collect();
-        let exact = reference::direct_at(ghosts, &points);
-        let along = points.iter().map(|point| if self.horizontal { point.x } else { point.y });
+    pub fn beside_truth(&self, problem: &Problem) -> Vec<CutPoint> {
+        let exact = problem.on(self.frame).truth(&self.pixels);
+        let places = self.pixels.iter().map(|&[i, j]| self.frame.position(f64::from(i), f64::from(j)));
+        let along = places.map(|place| if self.horizontal { place.x } else { place.y });
         let values = self.pixels.iter().zip(&self.rendered).zip(exact);
         along
             .zip(values)

@@ -61,5 +61,8 @@ fn what_contradicts_the_whole_photo_is_refused() {
         assert!(!place.path("out.exr").exists());
     };
     refused(2, &["--lights", "lights.toml"], "cannot be used with");
-    refused(1, &["--evaluator", "direct"], "give --sources lights");
+    refused(1, &["--evaluator", "direct"], "give --sources lights, or another evaluator");
+    let studied = place.vglare(&["tradeoff", "in.exr", "-o", "page", "--sources", "photo"]);
+    studied.failed(2, &["every pixel is a source: give --sources lights"]);
+    assert!(!place.path("page").exists());
 }
