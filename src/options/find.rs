@@ -26,8 +26,8 @@ pub struct FindArgs {
     #[arg(long, value_name = "F", allow_hyphen_values = true, value_parser = factor)]
     firefly_limit: Option<f64>,
 
-    /// With `--sources photo` and a threshold: pixels begin to shine so far below it and shine in full so far above, in luminance;
-    /// what shines is what is above the threshold [default: 0]
+    /// With `--sources photo` and a threshold, which then is one of a pixel's brightest channel: pixels begin to shine so far below
+    /// it, and so far above it all that is above it shines [default: 0]
     #[arg(long, value_name = "K", allow_hyphen_values = true, value_parser = not_negative)]
     knee: Option<f64>,
 }
