@@ -9,7 +9,7 @@ layout(std140, binding = BINDING_PASS) uniform Pass {
     vec4 scale;      // the field's unit, RGB
     vec4 constant;   // what is subtracted from the field, RGB
     vec4 light_gain; // what a light keeps of itself, RGB; 1 unless light is taken from the photo
-    vec4 luminance;  // weights of R, G, B; w: the luminance from which on a pixel is a light
+    vec4 luminance;  // weights of R, G, B; w: the brightness from which on a pixel is a light
     float strength;
     float flat_span; // a range no wider than this is rounding
     vec2 knee;       // a soft threshold, and how far below and above it the transition goes

@@ -6,7 +6,7 @@
 layout(binding = UNIT_PHOTO) uniform sampler2D photo;
 layout(std140, binding = BINDING_PASS) uniform Pass {
     vec3 weights;    // of linear R, G and B in luminance
-    float threshold; // from which luminance on a pixel is light
+    float threshold; // from which brightness on a pixel is light
     vec2 origin;     // of the screen's top left corner, in the photo's pixels
     float pitch;     // the photo's pixels from one of the screen to the next
     float rows;      // of the screen
@@ -18,15 +18,15 @@ layout(location = 0) out vec4 shown;
 
 // As the search for lights has it: a single pixel that outshines all its neighbours is a firefly and no light.
 bool is_marked(ivec2 at) {
-    float luminance = emitted(texelFetch(photo, at, 0), weights);
-    if (!is_light(luminance, threshold)) return false;
+    float brightness = emitted(texelFetch(photo, at, 0), weights);
+    if (!is_light(brightness, threshold)) return false;
     ivec2 end = textureSize(photo, 0);
     if (limit == 0.0 || end == ivec2(1)) return true;
     ivec2 first = max(at - 1, 0), last = min(at + 1, end - 1);
     for (int j = first.y; j <= last.y; ++j) {
         for (int i = first.x; i <= last.x; ++i) {
             bool other = ivec2(i, j) != at;
-            if (other && luminance <= limit * emitted(texelFetch(photo, ivec2(i, j), 0), weights)) return true;
+            if (other && brightness <= limit * emitted(texelFetch(photo, ivec2(i, j), 0), weights)) return true;
         }
     }
     return false;

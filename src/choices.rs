@@ -100,6 +100,40 @@ pub enum Sources {
     Lights,
 }
 
+/// What tells lights from the rest of a photo.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "terminal", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+pub enum LightBy {
+    /// A pixel's luminance, by which red and blue lamps are darker than white ones
+    Luminance,
+    /// Its brightest channel, by which a lamp of any colour is as bright as a white one
+    #[default]
+    Brightest,
+}
+
+impl std::fmt::Display for LightBy {
+    /// What is compared, for people.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Luminance => "luminance",
+            Self::Brightest => "brightest channel",
+        })
+    }
+}
+
+/// What becomes of lights beyond the most that are kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "terminal", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+pub enum Beyond {
+    /// Each joins the nearest that is kept, so that no light is lost
+    #[default]
+    Join,
+    /// They are left out
+    Drop,
+}
+
 /// What a look's lengths are counted in: sizes, and positions from the picture's centre.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "terminal", derive(clap::ValueEnum))]
@@ -116,7 +150,7 @@ pub enum LengthUnit {
 }
 
 impl LengthUnit {
-    /// What a file with lengths in it means that names no unit: such files are older than the others.
+    /// What a file with lengths in it means that names neither a unit nor a version: such files are older than the others.
     pub const OF_FILES: Self = Self::Height;
 }
 

@@ -60,7 +60,7 @@ pub enum Error {
     },
 
     /// No lens preset has this name.
-    #[error("no lens preset is called {name:?}; there are {}{}", known.join(", "), meant(name, known))]
+    #[error("no lens preset is called {name:?}; there are {}{}{}", known.join(", "), older(known), meant(name, known))]
     UnknownPreset {
         /// The name that was given.
         name: String,
@@ -297,6 +297,11 @@ fn meant(name: &str, known: &[String]) -> String {
     best.filter(|best| alike(best) > 0.8).map_or_else(String::new, |best| format!("; did you mean {best}?"))
 }
 
+/// Those that are not in a list of names.
+fn older(known: &[String]) -> &'static str {
+    if known.iter().any(|name| name.starts_with("v1/")) { "" } else { ", and those of looks of version 1 as v1/NAME" }
+}
+
 /// So many pixels.
 fn counted(pixels: usize) -> String {
     if pixels == 1 { "1 pixel".to_owned() } else { format!("{pixels} pixels") }
@@ -321,7 +326,8 @@ mod tests {
         let known = ["classic-prime", "anamorphic", "zoom", "vintage-uncoated", "eye"].map(String::from).to_vec();
         let said = |name: &str| Error::UnknownPreset { name: name.into(), known: known.clone() }.to_string();
         for (name, meant) in [("vintage", "vintage-uncoated"), ("clasic-prime", "classic-prime"), ("Zoom", "zoom")] {
-            assert!(said(name).ends_with(&format!(", eye; did you mean {meant}?")), "{}", said(name));
+            let ends = format!(", eye, and those of looks of version 1 as v1/NAME; did you mean {meant}?");
+            assert!(said(name).ends_with(&ends), "{}", said(name));
         }
         for name in ["fisheye-8mm", "x", ""] {
             assert!(!said(name).contains("did you mean"), "{}", said(name));

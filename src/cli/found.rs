@@ -1,33 +1,70 @@
 //! What is said of a search for lights.
 
+use crate::choices::LightBy;
 use crate::scene::threshold::{FLOOR, Rule};
 use crate::scene::{FindOptions, Found};
 
 /// Why there are none, and what to do about it; only where no pixel is light.
 pub fn none(found: &Found) -> String {
     let (peak, threshold) = (short(found.peak), short(found.threshold));
-    let instead = "--lights FILE and --scene FILE list lights by hand";
+    let instead = "--sources photo takes every pixel, and --lights FILE and --scene FILE list lights by hand";
+    let brightest = match found.by {
+        LightBy::Luminance => "the photo's brightest luminance",
+        LightBy::Brightest => "its brightest pixel's brightest channel",
+    };
+    // A lamp of one colour has no more luminance than its colour has of white.
+    let colours = match found.by {
+        LightBy::Luminance => ", and --by brightest finds coloured lamps",
+        LightBy::Brightest => "",
+    };
     match found.rule {
         _ if found.peak == 0.0 => format!("the photo is black; {instead}"),
         Rule::Given => {
-            format!(
-                "the threshold is {threshold} and the photo's brightest luminance {peak}; a lower --threshold finds more"
-            )
+            format!("the threshold is {threshold} and {brightest} {peak}; a lower --threshold finds more{colours}")
         }
+        // What is made for a display ends at its white.
+        _ if found.peak <= 1.0 && found.threshold > 1.0 => format!(
+            "nothing stands out: the photo ends at white, as those made for a display do, and none of its pixels can be as bright as \
+             {threshold}, {}; --threshold {} takes its brightest{colours}, {instead}",
+            rule(found),
+            short(0.9 * found.peak)
+        ),
         _ => format!(
-            "nothing stands out: the photo's brightest luminance, {peak}, is below the threshold, {threshold}, {}; \
-             --threshold L takes what is L or brighter, {instead}",
-            rule(found.rule)
+            "nothing stands out: {brightest}, {peak}, is below the threshold, {threshold}, {}; \
+             --threshold L takes what is L or brighter{colours}, {instead}",
+            rule(found)
         ),
     }
 }
 
+/// What became of lights beyond the most that are kept, if there were any, and how much of the flux they have.
+pub fn beyond(found: &Found) -> Option<String> {
+    // Never none where there is some.
+    let share = |share: f64| match 100.0 * share {
+        percent if percent < 0.05 => "less than 0.1 % of the flux".to_owned(),
+        percent => format!("{percent:.1} % of the flux"),
+    };
+    let ones = |count: usize| format!("{count} fainter {}", if count == 1 { "one" } else { "ones" });
+    match (found.joined, found.dropped) {
+        (0, 0) => None,
+        (0, dropped) => Some(format!(
+            "{} left out, {}: --max-lights N keeps more, --beyond join their light",
+            ones(dropped),
+            share(found.dropped_share)
+        )),
+        (joined, _) => {
+            let whose = if joined == 1 { "its" } else { "their" };
+            Some(format!("{} joined {whose} nearest, {}", ones(joined), share(found.joined_share)))
+        }
+    }
+}
+
 /// How the threshold was chosen.
-pub fn rule(rule: Rule) -> String {
-    match rule {
+pub fn rule(found: &Found) -> String {
+    match found.rule {
         Rule::Given => "as given".to_owned(),
         Rule::Split => "which splits the photo's flux best into light and scene".to_owned(),
-        Rule::Mean => format!("{FLOOR} times the mean luminance"),
+        Rule::Mean => format!("{FLOOR} times the mean {}", found.by),
         Rule::Clipped => "just below the level at which highlights are clipped".to_owned(),
     }
 }
@@ -66,6 +103,7 @@ mod tests {
     use crate::scene::find;
 
     fn found(level: f32, options: &FindOptions) -> Found {
+        let options = &FindOptions { by: LightBy::Luminance, ..*options };
         let mut pixels = [[level, level, level, 1.0]; 100];
         pixels[42] = [100.0 * level, 0.0, 0.0, 1.0];
         find(&pixels, &Frame::full(10, 10), [0.2126, 0.7152, 0.0722], options)
@@ -74,15 +112,32 @@ mod tests {
     #[test]
     fn photos_without_lights_have_a_reason_and_a_way_out() {
         let said = |level, options: FindOptions| none(&found(level, &FindOptions { firefly_limit: 10.0, ..options }));
-        let said_of = |threshold| said(0.5, FindOptions { threshold, ..FindOptions::default() });
+        let said_of = |threshold| said(50.0, FindOptions { threshold, ..FindOptions::default() });
         assert!(said(0.0, FindOptions::default()).starts_with("the photo is black;"));
         let flat = said_of(None);
         assert!(
-            flat.contains("0.5000") && flat.contains("4 times the mean") && flat.contains("--threshold L"),
+            flat.contains("50.00") && flat.contains("4 times the mean") && flat.contains("--threshold L"),
             "{flat}"
         );
-        let given = said_of(Some(3.0));
-        assert!(given.contains("3.000") && given.contains("0.5000") && given.contains("lower --threshold"), "{given}");
+        // Grey of mean 0.3 has its threshold above white.
+        let display =
+            Found { by: LightBy::Brightest, peak: 0.9, threshold: 1.2, ..found(0.3, &FindOptions::default()) };
+        let display = none(&display);
+        let words = ["ends at white", "1.200", "--threshold 0.8100 takes", "--sources photo", "--lights"];
+        assert!(words.iter().all(|word| display.contains(word)), "{display}");
+        let given = said_of(Some(3000.0));
+        assert!(given.contains("3000") && given.contains("50.00") && given.contains("lower --threshold"), "{given}");
+    }
+
+    #[test]
+    fn what_is_beyond_the_most_is_told_with_its_share() {
+        let found = found(0.5, &FindOptions::default());
+        assert_eq!(beyond(&found), None);
+        let said = |found: Found| beyond(&found).unwrap();
+        let dropped = said(Found { dropped: 28, dropped_share: 0.183, ..found.clone() });
+        assert!(dropped.starts_with("28 fainter ones left out, 18.3 % of the flux: --max-lights"), "{dropped}");
+        let joined = said(Found { joined: 3, joined_share: 1e-5, ..found });
+        assert_eq!(joined, "3 fainter ones joined their nearest, less than 0.1 % of the flux");
     }
 
     #[test]

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::found::{self, short};
 use crate::Result;
-use crate::choices::LengthUnit;
+use crate::choices::{LengthUnit, LightBy};
 use crate::frame::Frame;
 use crate::look::Look;
 use crate::options::{FindArgs, ReadArgs, UnitArgs};
@@ -73,12 +73,15 @@ pub fn run(args: &Args) -> Result<()> {
 #[derive(Serialize)]
 struct Json {
     unit: LengthUnit,
+    by: LightBy,
     threshold: f64,
     rule: Rule,
     regions: usize,
     merged: usize,
     dropped: usize,
     dropped_share: f64,
+    joined: usize,
+    joined_share: f64,
     fireflies: FirefliesJson,
     lights: Vec<LightJson>,
 }
@@ -112,12 +115,15 @@ impl From<&Light> for LightJson {
 fn json(out: &mut dyn Write, found: &Found, unit: LengthUnit) -> io::Result<()> {
     let json = Json {
         unit,
+        by: found.by,
         threshold: found.threshold,
         rule: found.rule,
         regions: found.regions,
         merged: found.merged(),
         dropped: found.dropped,
         dropped_share: found.dropped_share,
+        joined: found.joined,
+        joined_share: found.joined_share,
         fireflies: found.into(),
         lights: found.lights.iter().map(LightJson::from).collect(),
     };
@@ -151,14 +157,11 @@ fn summary(found: &Found, options: &FindOptions) -> String {
     let told = if found.regions == 0 {
         format!("No lights: {}.", found::none(found))
     } else {
-        let (threshold, rule) = (short(found.threshold), found::rule(found.rule));
+        let (by, threshold, rule) = (found.by, short(found.threshold), found::rule(found));
         let (regions, lights, merged) = (found.regions, found.lights.len(), found.merged());
-        let dropped = match found.dropped {
-            0 => "none dropped".to_owned(),
-            n => format!("{n} dropped with {:.2} % of the flux", 100.0 * found.dropped_share),
-        };
+        let beyond = found::beyond(found).map_or(String::new(), |beyond| format!("\nBeyond them: {beyond}."));
         format!(
-            "Threshold luminance {threshold}, {rule}. {regions} regions: {lights} lights, {merged} merged, {dropped}."
+            "Threshold of the {by} {threshold}, {rule}. {regions} regions: {lights} lights, {merged} merged.{beyond}"
         )
     };
     match found::fireflies(found, options) {
@@ -188,7 +191,8 @@ mod tests {
         pixels[2 * 40 + 30] = [900.1, 800.2, 700.3, 1.0];
         pixels[12 * 40 + 5] = [50.0, 30.0, 0.0, 1.0];
         pixels[18 * 40 + 5] = [500.0, 30.0, 0.0, 1.0];
-        let options = FindOptions { max_lights: 2, firefly_limit: 0.0, ..FindOptions::default() };
+        let options =
+            FindOptions { by: LightBy::Luminance, max_lights: 2, firefly_limit: 0.0, ..FindOptions::default() };
         (find(&pixels, &frame, [0.2126, 0.7152, 0.0722], &options), frame)
     }
 
@@ -206,7 +210,13 @@ mod tests {
             options(&["a.exr", "--threshold", "2.5", "--merge", "0", "--max-lights", "7", "--firefly-limit", "1"]);
         assert_eq!(
             given,
-            FindOptions { threshold: Some(2.5), merge: 0.0, max_lights: 7, firefly_limit: 1.0, knee: 0.0 }
+            FindOptions {
+                threshold: Some(2.5),
+                merge: 0.0,
+                max_lights: 7,
+                firefly_limit: 1.0,
+                ..FindOptions::default()
+            }
         );
         for bad in [
             ["--threshold", "nan"],
@@ -236,8 +246,9 @@ mod tests {
         let (found, frame) = found();
         let text = printed(|out| table(out, &found, &FindOptions::default(), &frame));
         assert!(text.contains("30.0") && text.contains("18.0"), "{text}");
-        let summary = text.lines().last().unwrap();
-        assert!(summary.contains("3 regions: 2 lights, 0 merged, 1 dropped with "), "{text}");
+        let summary: Vec<_> = text.lines().rev().take(2).collect();
+        assert!(summary[1].contains("3 regions: 2 lights, 0 merged."), "{text}");
+        assert!(summary[0].starts_with("Beyond them: 1 fainter one joined its nearest, "), "{text}");
     }
 
     #[test]

@@ -20,6 +20,10 @@ pub struct Args {
     /// Print the lens file of this preset instead, to start a lens of your own from
     name: Option<String>,
 
+    /// List those of looks of version 1, too, which files without a version mean
+    #[arg(long, conflicts_with = "name")]
+    all: bool,
+
     /// Print the list as JSON
     #[arg(long, conflicts_with = "name")]
     json: bool,
@@ -28,6 +32,7 @@ pub struct Args {
 const EXAMPLES: &str = "\
 Examples:
   vglare presets                           What is there?
+  vglare presets --all                     And in looks of version 1?
   vglare presets anamorphic > mine.toml    Begin a lens file of your own";
 
 /// Prints the list, or the lens file of the preset that is named.
@@ -40,7 +45,8 @@ pub fn run(args: &Args) -> Result<()> {
         let preset = presets::find(name)?;
         return stdout::print(|out| out.write_all(preset.toml.as_bytes()));
     }
-    let lenses = presets::all().iter().map(|preset| preset.lens()).collect::<Result<Vec<_>>>()?;
+    let older = if args.all { presets::of_version_1() } else { &[] };
+    let lenses = presets::all().iter().chain(older).map(|preset| preset.lens()).collect::<Result<Vec<_>>>()?;
     if args.json { stdout::json(|out| json(out, &lenses)) } else { stdout::print(|out| table(out, &lenses)) }
 }
 
@@ -96,7 +102,11 @@ fn table(out: &mut dyn Write, lenses: &[Lens]) -> io::Result<()> {
         ]);
     }
     table.column_iter_mut().skip(1).take(3).for_each(|column| column.set_cell_alignment(CellAlignment::Right));
-    writeln!(out, "{}\n\nWhere no lens is named, it is {DEFAULT_PRESET}.", table.trim_fmt())
+    writeln!(
+        out,
+        "{}\n\nWhere no lens is named, it is {DEFAULT_PRESET}. Those of looks of version 1 are called v1/NAME: --all lists them.",
+        table.trim_fmt()
+    )
 }
 
 #[cfg(test)]

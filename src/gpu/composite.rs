@@ -19,7 +19,7 @@ pub(crate) struct Composite {
     pub constant: [f32; 4],
     /// What a light keeps of itself, RGB.
     pub light_gain: [f32; 4],
-    /// Weights of R, G, B in luminance, then the luminance from which on a pixel is a light.
+    /// Weights of R, G, B in luminance, then the brightness from which on a pixel is a light.
     pub luminance: [f32; 4],
     /// What the normalised glare is multiplied by.
     pub strength: f32,
@@ -45,6 +45,8 @@ pub(crate) struct Variant {
     pub soft: bool,
     /// Whether the photo's colours are not multiplied by alpha, which tells its lights.
     pub straight: bool,
+    /// Whether its lights are told by the brightest channel instead of by luminance.
+    pub brightest: bool,
     /// How many layers are laid over the photo; 0, or as many as are loaded.
     pub layers: usize,
 }
@@ -61,6 +63,9 @@ impl Variant {
             }
             if self.straight {
                 defines.push(("STRAIGHT", "1"));
+            }
+            if self.brightest {
+                defines.push(("BRIGHTEST", "1"));
             }
         }
         defines

@@ -14,7 +14,7 @@ use crate::Result;
 pub(crate) struct Mask {
     /// Of linear R, G and B in luminance.
     pub weights: [f32; 3],
-    /// From which luminance on a pixel is light.
+    /// From which brightness on a pixel is light.
     pub threshold: f32,
     /// Where the screen's top left corner lies on the photo, in its pixels from its top left corner.
     pub origin: [f32; 2],
@@ -42,21 +42,19 @@ impl MaskPass {
         Ok(Self { uniforms: Buffer::new(runner.device(), 1)? })
     }
 
-    /// Marks what is light in a region of the screen, by the photo's straight alpha where it has one; the rest of it
-    /// stays.
+    /// Marks what is light in a region of the screen, as the defines of `shared/emission.glsl` tell it; the rest of it stays.
     pub fn draw(
         &mut self,
         runner: &Runner,
         photo: &Texture,
         mask: &Mask,
-        straight: bool,
+        defines: &[(&str, &str)],
         screen: &Screen,
         region: Region,
     ) -> Result<()> {
         self.uniforms.store(&[Mask { rows: screen.size()[1] as f32, ..*mask }])?;
         self.uniforms.bind_uniform(PASS);
         photo.bind(PHOTO);
-        let defines: &[_] = if straight { &[("STRAIGHT", "1")] } else { &[] };
         runner.draw_screen("mask.frag", defines, screen, region)
     }
 }

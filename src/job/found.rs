@@ -56,12 +56,16 @@ impl<'a> Found<'a> {
         let bad = stages.time("survey", || photo::survey(&photo));
         let scene = stages.time("lights", || look.gather_knowing(&photo, &frame, search));
         let mut warnings = photo.source.notes.clone();
-        let bright = |threshold| bright_light(&photo, &frame, threshold);
+        let bright = |threshold| bright_light(&photo, &frame, look.find.by, threshold);
         let (settings, warning) = settings(look, &photo, &scene, bright)?;
         warnings.extend(warning);
         let FindOptions { threshold, knee, .. } = look.find;
-        if look.takes_photo() && look.find != (FindOptions { threshold, knee, ..FindOptions::default() }) {
-            warnings.push("rules for lights, but for a threshold, change nothing where every pixel is a source".into());
+        let unsaid = [FindOptions::default(), FindOptions::VERSION_1];
+        if look.takes_photo() && unsaid.iter().all(|rules| look.find != FindOptions { threshold, knee, ..*rules }) {
+            warnings.push(
+                "rules for lights, but for a threshold, change nothing where every pixel is a source: --sources lights looks for lights"
+                    .into(),
+            );
         }
         if knee != 0.0 && !(look.takes_photo() && threshold.is_some()) {
             warnings.push("a knee is of a threshold where every pixel is a source, and changes nothing here".into());

@@ -2,13 +2,14 @@
 
 use super::{Accuracy, Look, LookLens, LookLights, Shared, Veil};
 use crate::choices::{LengthUnit, Mix, Sources};
-use crate::scene::presets::{DEFAULT_PRESET, NO_LENS};
-use crate::scene::{AccuracySection, FindOptions, FindSection, LookSection, SceneFile, VeilSection};
+use crate::scene::presets::{self, DEFAULT_PRESET, NO_LENS};
+use crate::scene::{AccuracySection, FindOptions, FindSection, LookSection, SceneFile, VeilSection, Version};
 use crate::{Error, Result};
 
 impl Look {
-    /// The look that a scene file describes; what it leaves open is as by default, but for the unit of its lengths, which is
-    /// [`LengthUnit::OF_FILES`].
+    /// The look that a scene file describes. What one of version 2 leaves open is as by default; what it lists, lights, ghosts or a lens
+    /// of its own, has no veil unless it names one. What one of version 1 leaves open is as it was then: lights that are found by
+    /// [`FindOptions::VERSION_1`], and lengths in [`LengthUnit::OF_FILES`].
     ///
     /// # Errors
     /// [`Error::UnknownPreset`] for a preset that there is not, which no file that was read names; [`Error::Usage`] for a veil that
@@ -16,9 +17,16 @@ impl Look {
     pub fn from_scene(scene: SceneFile) -> Result<Self> {
         // Ghosts alone are the whole scene: nothing then is looked for in the photo.
         let ghosts_only = !scene.ghosts.is_empty() && scene.lens_ghosts.is_empty() && scene.preset.is_none();
-        let photo = scene.look.sources == Some(Sources::Photo);
+        let lists = scene.lights.is_some() || !scene.ghosts.is_empty() || !scene.lens_ghosts.is_empty();
+        let sources = scene.look.sources.unwrap_or(match scene.version {
+            Version::One => Sources::Lights,
+            // Who counts lights means lights.
+            Version::Two if scene.find.max_lights.is_some() || ghosts_only => Sources::Lights,
+            Version::Two if scene.lights.is_some() && !scene.find.add => Sources::Lights,
+            Version::Two => Sources::Photo,
+        });
         let lights = match scene.lights {
-            lights if photo => LookLights::Photo(lights.unwrap_or_default().into()),
+            lights if sources == Sources::Photo => LookLights::Photo(lights.unwrap_or_default().into()),
             Some(lights) if scene.find.add && !lights.is_empty() => LookLights::FoundAnd(lights.into()),
             Some(_) | None if scene.find.add => LookLights::Found,
             Some(lights) => LookLights::Listed(lights.into()),
@@ -27,7 +35,9 @@ impl Look {
         };
         let lens = match scene.preset {
             Some(name) => LookLens::preset(&name)?,
-            None if scene.lens_ghosts.is_empty() => LookLens::preset(DEFAULT_PRESET)?,
+            None if scene.lens_ghosts.is_empty() => {
+                LookLens::Preset(presets::named_in(scene.version, DEFAULT_PRESET)?.into())
+            }
             None => LookLens::Own(scene.lens_ghosts.into()),
         };
         let LookSection { strength, size, tint, mix, normalize, unit, fov, sources: _ } = scene.look;
@@ -41,6 +51,7 @@ impl Look {
         let adds = mix == Some(Mix::Add);
         let (veil, of_lens) = match scene.veil {
             None if scene.no_veil => (None, None),
+            None if lists && scene.version == Version::Two => (None, None),
             None => {
                 (lens.veil().map(|veil| Veil::new(&veil.section, adds)), lens.veil().and_then(|veil| veil.section.fov))
             }
@@ -50,14 +61,17 @@ impl Look {
         Ok(Self {
             description: scene.description,
             lens,
-            unit: unit.unwrap_or(LengthUnit::OF_FILES),
+            unit: unit.unwrap_or(match scene.version {
+                Version::One => LengthUnit::OF_FILES,
+                Version::Two => LengthUnit::ShortSide,
+            }),
             fov: fov.or(of_veil).or(of_lens),
             axis: scene.axis.unwrap_or_default(),
             size: size.unwrap_or(1.0),
             tint: tint.unwrap_or([1.0; 3]),
             lights,
             ghosts: scene.ghosts.into(),
-            find: scene.find.options(),
+            find: scene.find.options(scene.version),
             strength: strength.unwrap_or(1.0),
             veil,
             mix: mix.unwrap_or_default(),
@@ -88,8 +102,6 @@ impl Look {
             LookLens::File(_, lens) => (None, lens.ghosts.clone()),
             LookLens::Own(ghosts) => (None, ghosts.to_vec()),
         };
-        // A lens that is written as a table has no veil of its own.
-        let preset_has_veil = preset.is_some() && lens.veil().is_some();
         let listed = match lights {
             LookLights::Found => None,
             LookLights::Photo(lights) if lights.is_empty() => None,
@@ -98,10 +110,11 @@ impl Look {
             }
         };
         let add = matches!(lights, LookLights::FoundAnd(_));
-        let sources = matches!(lights, LookLights::Photo(_)).then_some(Sources::Photo);
+        let sources = if matches!(lights, LookLights::Photo(_)) { Sources::Photo } else { Sources::Lights };
         let Accuracy { goal, allow_floor, degree, period, evaluator } = *accuracy;
-        let FindOptions { threshold, merge, max_lights, firefly_limit, knee } = *find;
+        let FindOptions { by, threshold, merge, max_lights, beyond, firefly_limit, knee } = *find;
         SceneFile {
+            version: Version::Two,
             description: description.clone(),
             preset,
             axis: Some(*axis),
@@ -114,21 +127,23 @@ impl Look {
                 // To say of a veil that it is added is to say more than nothing.
                 mix: veil.as_ref().is_none_or(|veil| veil.adds || *mix != Mix::Add).then_some(*mix),
                 normalize: Some(*normalize),
-                unit: (*unit != LengthUnit::OF_FILES).then_some(*unit),
+                unit: Some(*unit),
                 fov: if veil.is_some() { None } else { *fov },
-                sources,
+                sources: Some(sources),
             },
             find: FindSection {
+                by: Some(by),
                 threshold,
                 merge: Some(merge),
                 max_lights: Some(max_lights),
+                beyond: Some(beyond),
                 firefly_limit: Some(firefly_limit),
-                knee: (knee != 0.0).then_some(knee),
+                knee: Some(knee),
                 add,
             },
             accuracy: AccuracySection { goal: Some(goal), allow_floor, evaluator },
             veil: veil.as_ref().map(|veil| VeilSection { fov: *fov, ..veil.section() }),
-            no_veil: veil.is_none() && preset_has_veil,
+            no_veil: veil.is_none(),
             lights: listed,
             ghosts: ghosts.to_vec(),
             lens_ghosts,
@@ -141,7 +156,7 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
-    use crate::choices::{Evaluator, Normalize};
+    use crate::choices::{Beyond, Evaluator, LightBy, Normalize};
     use crate::psf::{Name, Parameters};
     use crate::scene::{Ghost, Goal, Lens, Light, presets, read_scene, write_scene};
     use crate::series::Bell;
@@ -169,7 +184,15 @@ mod tests {
             tint: [1.0, 0.3, 0.0],
             lights: LookLights::Listed(vec![light].into()),
             ghosts: vec![ghost.clone()].into(),
-            find: FindOptions { threshold: Some(3.5), merge: 0.1, max_lights: 5, firefly_limit: 20.0, knee: 0.5 },
+            find: FindOptions {
+                by: LightBy::Luminance,
+                threshold: Some(3.5),
+                merge: 0.1,
+                max_lights: 5,
+                beyond: Beyond::Drop,
+                firefly_limit: 20.0,
+                knee: 0.5,
+            },
             strength: 1.7,
             veil: None,
             mix: Mix::Energy,
@@ -185,7 +208,10 @@ mod tests {
         let none = Look { lights: LookLights::Listed(Shared::default()), ..Look::default() };
         // Without the preset's name the ghost would be the whole scene.
         let ghost_and_photo = Look { ghosts: vec![ghost].into(), ..Look::default() };
+        let found = Look { lights: LookLights::Found, ..Look::default() };
         let added = Look { lights: LookLights::FoundAnd(vec![light].into()), ..Look::default() };
+        let beside = Look { lights: LookLights::Photo(vec![light].into()), ..Look::default() };
+        let old = Look { lens: LookLens::preset("v1/zoom").unwrap(), find: FindOptions::VERSION_1, ..found.clone() };
         let section = VeilSection {
             parameters: Parameters { age: Some(60.0), ..Parameters::new(Name::Cie) },
             fov: None,
@@ -200,9 +226,8 @@ mod tests {
         let eye = Look::default().through(LookLens::preset("eye").unwrap(), false).unwrap();
         let without = Look { veil: None, ..eye.clone() };
         assert!(eye.lens_ghosts().is_empty() && without.lens_ghosts().len() == 9);
-        for look in
-            [Look::default(), full.clone(), none, ghost_and_photo, added, veiled(false), veiled(true), eye, without]
-        {
+        let looks = [Look::default(), full.clone(), none, ghost_and_photo, found, added, beside, old];
+        for look in looks.into_iter().chain([veiled(false), veiled(true), eye, without]) {
             assert_eq!(through_a_file(&look), look);
         }
         let filed =
@@ -219,16 +244,61 @@ mod tests {
     }
 
     #[test]
-    fn an_empty_file_is_the_default_look_in_the_unit_of_files() {
-        let look = Look { unit: LengthUnit::Height, ..Look::default() };
-        assert_eq!(Look::from_scene(SceneFile::default()).unwrap(), look);
+    fn an_empty_file_is_the_default_look_of_its_version() {
+        assert_eq!(Look::from_scene(SceneFile::default()).unwrap(), Look::default());
+        let look = Look {
+            lens: LookLens::preset("v1/classic-prime").unwrap(),
+            unit: LengthUnit::Height,
+            lights: LookLights::Found,
+            find: FindOptions::VERSION_1,
+            veil: None,
+            ..Look::default()
+        };
+        assert_eq!(Look::from_scene(SceneFile { version: Version::One, ..SceneFile::default() }).unwrap(), look);
         assert_eq!(through_a_file(&look), look);
+    }
+
+    #[test]
+    fn what_a_file_lists_is_all_there_is() {
+        let light = Light { position: DVec2::ONE, flux: [1.0; 3], size: 0.0, muted: false };
+        let ghost = Ghost { bell: Bell::Gaussian, center: DVec2::ZERO, size: DVec2::ONE, radiance: [1.0; 3] };
+        let veiled = SceneFile { preset: Some("eye".into()), ..SceneFile::default() };
+        let read = |scene: SceneFile| Look::from_scene(scene).unwrap();
+        assert!(read(veiled.clone()).veil.is_some());
+        let look = read(SceneFile { lights: Some(vec![light]), ..veiled.clone() });
+        assert_eq!((look.lights, look.veil), (LookLights::Listed(vec![light].into()), None));
+        let look = read(SceneFile { ghosts: vec![ghost.clone()], ..SceneFile::default() });
+        assert_eq!((look.lights, look.veil), (LookLights::Listed(Shared::default()), None));
+        // A lens that is named beside them is one of the photo.
+        let look = read(SceneFile { ghosts: vec![ghost], ..veiled.clone() });
+        assert_eq!((look.lights, look.veil), (LookLights::Photo(Shared::default()), None));
+        let own = presets::named("eye").unwrap().ghosts;
+        let look = read(SceneFile { lens_ghosts: own, ..SceneFile::default() });
+        assert_eq!((look.lights, look.veil), (LookLights::Photo(Shared::default()), None));
+        // Who names a veil has it.
+        let section = look_veil();
+        let look = read(SceneFile { lights: Some(vec![light]), veil: Some(section), ..veiled.clone() });
+        assert!(look.veil.is_some());
+        // Beside what is in the photo, which are its pixels unless lights are counted.
+        let find = FindSection { add: true, ..FindSection::default() };
+        let adds = SceneFile { lights: Some(vec![light]), find, ..SceneFile::default() };
+        assert_eq!(read(adds.clone()).lights, LookLights::Photo(vec![light].into()));
+        let counted = FindSection { max_lights: Some(7), ..find };
+        assert_eq!(read(SceneFile { find: counted, ..adds }).lights, LookLights::FoundAnd(vec![light].into()));
+        assert_eq!(read(SceneFile { find: counted, ..SceneFile::default() }).lights, LookLights::Found);
+        let knee = FindSection { threshold: Some(7.0), ..FindSection::default() };
+        assert_eq!(read(SceneFile { find: knee, ..SceneFile::default() }).lights, Look::default().lights);
+    }
+
+    fn look_veil() -> VeilSection {
+        Look::default().through(LookLens::preset("eye").unwrap(), false).unwrap().veil.unwrap().section()
     }
 
     #[test]
     fn a_file_adds_its_lights_to_the_photos() {
         let light = Light { position: DVec2::ONE, flux: [1.0; 3], size: 0.0, muted: false };
         let file = |lights| SceneFile {
+            version: Version::One,
             find: FindSection { add: true, ..FindSection::default() },
             lights,
             ..SceneFile::default()

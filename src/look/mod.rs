@@ -97,21 +97,23 @@ pub struct Accuracy {
 }
 
 impl Default for Look {
-    /// The lights of the photo through [`DEFAULT_PRESET`], as they are, in a unit that stays the same when the photo is turned.
+    /// Every pixel of the photo through [`DEFAULT_PRESET`], as it is, in a unit that stays the same when the photo is turned.
     fn default() -> Self {
+        let lens = LookLens::preset(DEFAULT_PRESET).expect("the default preset is compiled in");
+        let veil = lens.veil().map(|veil| Veil::new(&veil.section, false).expect("a test makes the veils of presets"));
         Self {
             description: String::new(),
-            lens: LookLens::preset(DEFAULT_PRESET).expect("the default preset is compiled in"),
+            lens,
             unit: LengthUnit::ShortSide,
             fov: None,
             axis: DVec2::ZERO,
             size: 1.0,
             tint: [1.0; 3],
-            lights: LookLights::Found,
+            lights: LookLights::Photo(Shared::default()),
             ghosts: Shared::default(),
             find: FindOptions::default(),
             strength: 1.0,
-            veil: None,
+            veil,
             mix: Mix::default(),
             normalize: Normalize::default(),
             accuracy: Accuracy::default(),

@@ -68,16 +68,22 @@ fn options(look: &Look) -> Result<Vec<String>> {
     if lens.veil().is_some() && veil.is_none() {
         options.add("--veil", NO_VEIL);
     }
-    if matches!(lights, LookLights::Photo(_)) {
-        options.add("--sources", name(Sources::Photo));
+    // The rules for lights below mean lights, too, where they are other than by default.
+    if !matches!(lights, LookLights::Photo(_)) {
+        options.add("--sources", name(Sources::Lights));
     }
     options.changed("--unit", *unit, default.unit, name);
     options.given("--fov", *fov, |fov| fov.to_string());
     options.changed("--axis", *axis, default.axis, pair);
-    let FindOptions { threshold, merge, max_lights, firefly_limit, knee } = *find;
+    let FindOptions { by, threshold, merge, max_lights, beyond, firefly_limit, knee } = *find;
+    options.changed("--by", by, default.find.by, name);
     options.given("--threshold", threshold, |x| x.to_string());
     options.changed("--merge", merge, default.find.merge, |x| x.to_string());
-    options.changed("--max-lights", max_lights, default.find.max_lights, |n| n.to_string());
+    // Beside pixels a number of lights means nothing, and no command line can say it.
+    if !matches!(lights, LookLights::Photo(_)) {
+        options.changed("--max-lights", max_lights, default.find.max_lights, |n| n.to_string());
+    }
+    options.changed("--beyond", beyond, default.find.beyond, name);
     options.changed("--firefly-limit", firefly_limit, default.find.firefly_limit, |x| x.to_string());
     options.changed("--knee", knee, default.find.knee, |x| x.to_string());
     options.changed("--strength", *strength, default.strength, |x| x.to_string());
@@ -140,8 +146,10 @@ mod tests {
     #[test]
     fn what_is_as_by_default_is_not_said() {
         assert_eq!(line(&Look::default()), "vglare apply night.exr -o out.png");
-        let look = Look { strength: 1.5, lens: LookLens::preset("zoom").unwrap(), ..Look::default() };
-        assert_eq!(line(&look), "vglare apply night.exr -o out.png --preset zoom --strength 1.5");
+        let look = Look { strength: 1.5, lens: LookLens::preset("v1/zoom").unwrap(), veil: None, ..Look::default() };
+        assert_eq!(line(&look), "vglare apply night.exr -o out.png --preset v1/zoom --strength 1.5");
+        let look = Look { lights: LookLights::Found, ..Look::default() };
+        assert_eq!(line(&look), "vglare apply night.exr -o out.png --sources lights");
     }
 
     #[test]

@@ -7,13 +7,13 @@ use std::path::PathBuf;
 
 use glam::DVec2;
 
-use crate::Result;
 use crate::choices::{LengthUnit, Mix, Sources};
 use crate::look::{Look, LookLens, LookLights};
-use crate::options::UnitArgs;
 use crate::options::numbers::point;
+use crate::options::{FindArgs, UnitArgs};
 use crate::scene;
 use crate::scene::presets::NO_LENS;
+use crate::{Error, Result};
 
 /// What glares.
 #[derive(Debug, clap::Args)]
@@ -24,11 +24,11 @@ pub struct SceneArgs {
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
 
-    /// The lens, one of `vglare presets` [default: classic-prime]
+    /// The lens, one of `vglare presets`, or v1/NAME, as it was in looks of version 1 [default: classic-prime]
     #[arg(long, value_name = "NAME", conflicts_with = "lens")]
     preset: Option<String>,
 
-    /// The lens, from a file of [[lens_ghost]] tables; `none` for one without ghosts
+    /// The lens, from a file of [[lens_ghost]] tables, which has no veil but its own; `none` for one without ghosts
     #[arg(long, value_name = "FILE")]
     lens: Option<PathBuf>,
 
@@ -40,8 +40,9 @@ pub struct SceneArgs {
     #[arg(long, value_name = "FILE")]
     add_lights: Option<PathBuf>,
 
-    /// What in the photo makes ghosts: every pixel, or what is found to be a light [default: lights]
-    #[arg(long, value_enum, value_name = "WHAT", conflicts_with = "lights")]
+    /// What in the photo makes ghosts: every pixel, or what is found to be a light [default: photo; lights where --lights,
+    /// --max-lights or a file of version 1 means them]
+    #[arg(long, value_enum, value_name = "WHAT")]
     sources: Option<Sources>,
 
     /// Where the lens's axis meets the picture, in the look's unit (see --unit) from its centre: ghosts lie on lines through it
@@ -72,12 +73,31 @@ impl SceneArgs {
         Ok(Some(lens))
     }
 
-    /// The look that the files and options give; its files are read and checked before anything long begins.
+    /// The look that the files and options give, beside those that say what a light is; its files are read and checked before
+    /// anything long begins.
     ///
     /// # Errors
-    /// [`crate::Error::SceneFile`] for a file that is not right, [`crate::Error::UnknownPreset`].
-    pub fn look(&self) -> Result<Look> {
+    /// [`Error::SceneFile`] for a file that is not right, [`Error::UnknownPreset`], and [`Error::Usage`] for options of lights
+    /// where every pixel is to be a source.
+    pub fn look(&self, find: &FindArgs) -> Result<Look> {
+        self.look_unless(find, Sources::Photo)
+    }
+
+    /// The same, where another source is meant if neither a file nor an option says which.
+    ///
+    /// # Errors
+    /// Those of [`SceneArgs::look`].
+    pub fn look_unless(&self, find: &FindArgs, unsaid: Sources) -> Result<Look> {
+        let counts = find.counts_lights();
+        if self.sources == Some(Sources::Photo) && (self.lights.is_some() || counts) {
+            let option = if counts { "--max-lights" } else { "--lights" };
+            return Err(Error::Usage(format!(
+                "--sources photo cannot be used with {option}: every pixel is a source, or there are lights (--sources lights); \
+                 --add-lights are beside the pixels"
+            )));
+        }
         let file = self.scene.as_deref().map(scene::read_scene).transpose()?;
+        let says_sources = file.as_ref().is_some_and(|file| file.look.sources.is_some());
         let says_veil = file.as_ref().is_some_and(|file| file.veil.is_some() || file.no_veil);
         let adds = file.as_ref().is_some_and(|file| file.look.mix == Some(Mix::Add));
         let look = file.map(Look::from_scene).transpose()?;
@@ -90,7 +110,10 @@ impl SceneArgs {
         if let Some(unit) = self.unit_of_lights()?.filter(|_| !names_unit) {
             look.unit = unit;
         }
-        if let Some(sources) = self.sources {
+        // What is counted is lights; those that a file lists are what they are.
+        let meant =
+            (counts || unsaid == Sources::Lights && !says_sources) && matches!(look.lights, LookLights::Photo(_));
+        if let Some(sources) = self.sources.or(meant.then_some(Sources::Lights)) {
             look.shine_by(sources);
         }
         if let Some(path) = &self.lights {

@@ -33,7 +33,7 @@ pub(super) fn window(device: &Rc<Device>, size: [u32; 2], report: &mut Report) -
     let strength = Step::Drag { from: slider(0.3), to: slider(0.9), frames: FRAMES };
     let light = Step::Drag { from: Place::Light(0), to: Place::Picture([0.4, -0.3]), frames: FRAMES };
     let arms = [
-        ("strength drag".to_owned(), Look::default(), strength, STRENGTH_BAR),
+        ("strength drag".to_owned(), Look { lights: LookLights::Found, ..Look::default() }, strength, STRENGTH_BAR),
         (format!("drag of a light with {GHOSTS} ghosts"), many_ghosts(), light, LIGHT_BAR),
     ];
     for (name, look, step, bar) in arms {

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::settings::Settings;
-use crate::choices::Normalize;
+use crate::choices::{LightBy, Normalize};
 use crate::gpu::composite::{Composite, Variant};
 use crate::gpu::field::{Bells, Source};
 use crate::gpu::layout::{
@@ -72,8 +72,8 @@ pub(super) fn bells<'a>(groups: impl IntoIterator<Item = &'a Group>) -> Bells {
 /// The composite that the settings ask for, of so many layers that are laid over the photo.
 pub(super) fn variant(source: Source, settings: &Settings, layers: usize) -> Variant {
     let (take_light, straight) = (settings.light_gain != [1.0; 3], settings.emission.straight);
-    let soft = settings.knee.is_some();
-    Variant { source, normalize: normalize(settings), take_light, soft, straight, layers }
+    let (soft, brightest) = (settings.knee.is_some(), settings.emission.by == LightBy::Brightest);
+    Variant { source, normalize: normalize(settings), take_light, soft, straight, brightest, layers }
 }
 
 /// How values become glare.

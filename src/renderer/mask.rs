@@ -4,6 +4,7 @@ use glam::DVec2;
 
 use super::Live;
 use crate::Result;
+use crate::choices::LightBy;
 use crate::gpu::mask::Mask as Uniforms;
 use crate::gpu::{Region, Screen};
 use crate::scene::Emission;
@@ -17,7 +18,7 @@ const MOST: u32 = 12;
 /// What counts as light, and where the photo lies on the screen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mask {
-    /// Linear luminance, in the photo's unit, from which on a pixel is light.
+    /// Linear brightness, in the photo's unit, from which on a pixel is light.
     pub threshold: f64,
     /// How many times as bright as its brightest neighbour a single pixel may be, and still is light; 0 for whatever it
     /// likes.
@@ -50,6 +51,8 @@ impl Live {
             limit: mask.firefly_limit as f32,
             pad: [0; 3],
         };
-        self.mask.draw(&self.picture.field.runner, photo, &uniforms, mask.emission.straight, screen, region)
+        let by = [("STRAIGHT", mask.emission.straight), ("BRIGHTEST", mask.emission.by == LightBy::Brightest)];
+        let defines: Vec<_> = by.into_iter().filter(|(_, is)| *is).map(|(name, _)| (name, "1")).collect();
+        self.mask.draw(&self.picture.field.runner, photo, &uniforms, &defines, screen, region)
     }
 }

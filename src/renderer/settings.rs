@@ -19,7 +19,7 @@ pub struct Settings {
     pub constant: [f64; 3],
     /// What a light keeps of itself, RGB; 1 unless light is taken from the photo.
     pub light_gain: [f64; 3],
-    /// The luminance from which on a pixel is a light.
+    /// The brightness from which on a pixel is a light.
     pub threshold: f64,
     /// Where every pixel is a light, what of it is, instead of all from a threshold on.
     pub knee: Option<Knee>,

@@ -1,6 +1,7 @@
 //! Scene, light and lens files, in TOML.
 //!
 //! ```toml
+//! version = 2                 # what the file means by what it does not say; without it, 1
 //! description = "a lamp and a blob"  # optional
 //! preset = "zoom"             # optional: the lens, where the file has no [[lens_ghost]]
 //! axis = [0.0, 0.1]           # optional: where the lens's axis meets the picture; the centre otherwise
@@ -13,13 +14,16 @@
 //! tint = [1.0, 1.0, 1.0]      # what the ghosts' colours are multiplied by; 0 or more
 //! mix = "add"                 # or "energy"
 //! normalize = "none"          # or "clamp", "minmax"
-//! unit = "height"             # of lengths; or "short-side", "diagonal", "degrees"
+//! unit = "short-side"         # of lengths; or "height", as in version 1, "diagonal", "degrees"
+//! sources = "photo"           # every pixel is a light; or "lights", as in version 1
 //! fov = 50                    # degrees across the picture's width, for what is in degrees
 //!
 //! [find]                      # lights in the photo, where the file lists none or adds to them
+//! by = "brightest"            # channel of a pixel; or "luminance", as in version 1
 //! threshold = 20.0
 //! merge = 0.02
-//! max_lights = 64
+//! max_lights = 4096           # 64 in version 1
+//! beyond = "join"             # the nearest light; or "drop", as in version 1
 //! firefly_limit = 1000        # a pixel that outshines its neighbours by more is no light; 0 takes it
 //! add = false                 # whether the file's lights are added to the photo's
 //!
@@ -53,7 +57,7 @@
 //! share = 0.01                # of the light's flux; 0 or more
 //! ```
 //!
-//! Lengths are in half picture heights unless `unit` in `[look]` says otherwise, the origin is the picture's centre, y points up. A lens file has `description`,
+//! Lengths are in what `unit` in `[look]` says, the origin is the picture's centre, y points up. A lens file has `description`,
 //! `[[lens_ghost]]` and `[veil]` only, a light file `[[light]]` only; a light file may also be what `vglare lights --json` prints.
 
 use std::fs;
@@ -67,8 +71,8 @@ use serde::de::DeserializeOwned;
 use super::bells::{Bells, Fault};
 use super::lens::Lens;
 use super::number::plain;
-use super::sections::{AccuracySection, AccuracyTable, FindSection, LookSection};
-use super::tables::{LensTable, LightsJson, LightsTable, SceneTable};
+use super::sections::{AccuracySection, AccuracyTable, FindSection, LookSection, Version};
+use super::tables::{LensTable, LightsJson, LightsTable, SceneTable, VersionTable};
 use super::veil::{self, VeilSection};
 use super::{Ghost, LensGhost, Light};
 use crate::choices::LengthUnit;
@@ -77,13 +81,15 @@ use crate::{Error, Result};
 /// What a scene file says. Everything is optional in the file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SceneFile {
+    /// What it means by what it does not say.
+    pub version: Version,
     /// One line for people.
     pub description: String,
-    /// The lens, as the name of a preset that there is; `None` beside lens ghosts.
+    /// The lens, as the name of a preset that there is, with `v1/` before it where it is one of version 1; `None` beside lens ghosts.
     pub preset: Option<String>,
     /// Where the lens's axis meets the picture; its centre where it is `None`.
     pub axis: Option<DVec2>,
-    /// Period of the series in x and y, half picture heights; planned where it is `None`.
+    /// Period of the series in x and y, in the file's unit; planned where it is `None`.
     pub period: Option<DVec2>,
     /// Highest harmonic in x and y, 0 to 4096; planned where it is `None`.
     pub degree: Option<[u32; 2]>,
@@ -116,9 +122,12 @@ pub fn read_scene(path: &Path) -> Result<SceneFile> {
 
 /// The scene that `text` describes, which came from `path`.
 pub(super) fn parse_scene(path: &Path, text: &str) -> Result<SceneFile> {
-    let table: SceneTable = from_toml(path, text)?;
     let located = |fault: Fault| Error::scene_file(path, pointed(text, fault.span, &fault.message));
-    let preset = table.preset().map_err(located)?;
+    // First: all else depends on it. What is no TOML is told below.
+    let version = toml::from_str(text).map_or(Ok(Version::One), |table: VersionTable| table.version());
+    let version = version.map_err(located)?;
+    let table: SceneTable = from_toml(path, text)?;
+    let preset = table.preset(version).map_err(located)?;
     let period = table.period.map(|period| DVec2::from_array(plain(period)));
     let accuracy = table.accuracy.map(AccuracyTable::section).transpose().map_err(located)?;
     let bells = Bells::new(path, table.profiles, period).map_err(located)?;
@@ -126,6 +135,7 @@ pub(super) fn parse_scene(path: &Path, text: &str) -> Result<SceneFile> {
     let lens_ghosts = table.lens_ghosts.into_iter().map(|ghost| ghost.lens_ghost(&bells));
     let veil = table.veil.map(|veil| veil::section(path, veil)).transpose().map_err(located)?;
     Ok(SceneFile {
+        version,
         description: table.description,
         preset,
         axis: table.axis.map(|axis| DVec2::from_array(plain(axis))),

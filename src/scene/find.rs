@@ -1,26 +1,31 @@
 //! Lights found in a photo.
 //!
 //! Pixels above a threshold are gathered into connected regions; regions that lie close together become one light; the
-//! brightest are kept. A light has its region's flux, centroid and extent, so a window or the sun with its aureole is
+//! brightest are kept, and the others join them. A light has its region's flux, centroid and extent, so a window or the sun with its aureole is
 //! one light with a size.
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
 
 use glam::{DVec2, I64Vec2};
+use rayon::prelude::*;
 
 use super::Knee;
 use super::Light;
 use super::emission::Emission;
 use super::lit::Lit;
+use super::nearest::Nearest;
 use super::regions::{Moments, regions};
 use super::threshold::{self, Rule};
+use crate::choices::{Beyond, LightBy};
 use crate::frame::Frame;
 
 /// What counts as a light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FindOptions {
-    /// Linear luminance, in the photo's unit, from which on a pixel is light; 0 takes every pixel that is not black.
+    /// What tells light from the rest, and weights it.
+    pub by: LightBy,
+    /// The linear value of that, in the photo's unit, from which on a pixel is light; 0 takes every pixel that is not black.
     /// `None` lets the photo decide: see [`threshold`].
     pub threshold: Option<f64>,
     /// A region whose centroid is no farther than this from a brighter one joins it; half picture heights. The brighter
@@ -28,6 +33,8 @@ pub struct FindOptions {
     pub merge: f64,
     /// At most so many lights are kept, the brightest.
     pub max_lights: usize,
+    /// What becomes of the others.
+    pub beyond: Beyond,
     /// A single pixel that is more than so many times as bright as the brightest of its neighbours is a firefly: no light,
     /// and nothing that the threshold goes by. At least 1; 0 takes every pixel as it is.
     pub firefly_limit: f64,
@@ -37,6 +44,17 @@ pub struct FindOptions {
 }
 
 impl FindOptions {
+    /// What looks of version 1 go by where they do not say: few lights, by luminance, and those beyond them are lost.
+    pub const VERSION_1: Self = Self {
+        by: LightBy::Luminance,
+        threshold: None,
+        merge: MERGE,
+        max_lights: 64,
+        beyond: Beyond::Drop,
+        firefly_limit: 0.0,
+        knee: 0.0,
+    };
+
     /// What of each pixel shines where every pixel is a source.
     pub fn knee(&self) -> Knee {
         self.threshold.map_or(Knee::NONE, |threshold| Knee { threshold, width: self.knee })
@@ -44,24 +62,38 @@ impl FindOptions {
 }
 
 impl Default for FindOptions {
-    /// 0.02, the width of a thumb at arm's length in a normal lens, 64 lights, and ten stops.
+    /// The brightest channel; 0.02, the width of a thumb at arm's length in a normal lens; more lights than nearly any photo has; and
+    /// ten stops.
     ///
     /// Of five panoramas and nine photos, each box-filtered to ten sizes, down to the sun in one pixel of 32 × 16, no
     /// pixel outshines its neighbours by more than 180; of those that a decoder had sampled without a filter, one by 900
     /// and one by 7800.
     fn default() -> Self {
-        Self { threshold: None, merge: 0.02, max_lights: 64, firefly_limit: 1000.0, knee: 0.0 }
+        Self {
+            by: LightBy::Brightest,
+            threshold: None,
+            merge: MERGE,
+            max_lights: 4096,
+            beyond: Beyond::Join,
+            firefly_limit: 1000.0,
+            knee: 0.0,
+        }
     }
 }
+
+/// How close regions are that become one light, unless somebody says otherwise.
+const MERGE: f64 = 0.02;
 
 /// The lights of a photo, and what was left out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
     /// The lights that were kept, brightest first.
     pub lights: Vec<Light>,
-    /// Each light's share of the flux of all regions, weighted by luminance.
+    /// Each light's share of the flux of all regions, weighted by brightness.
     pub shares: Vec<f64>,
-    /// The linear luminance from which on a pixel is light.
+    /// What told light from the rest.
+    pub by: LightBy,
+    /// The linear brightness from which on a pixel is light.
     pub threshold: f64,
     /// How the threshold was chosen.
     pub rule: Rule,
@@ -69,20 +101,24 @@ pub struct Found {
     pub regions: usize,
     /// Lights beyond [`FindOptions::max_lights`] that were dropped.
     pub dropped: usize,
-    /// Their share of the flux of all regions, 0 to 1, weighted by luminance.
+    /// Their share of the flux of all regions, 0 to 1, weighted by brightness.
     pub dropped_share: f64,
+    /// Lights beyond [`FindOptions::max_lights`] that joined the nearest one that was kept.
+    pub joined: usize,
+    /// Their share of the flux of all regions, in the same way; it is part of the lights' shares.
+    pub joined_share: f64,
     /// Pixels at or above the threshold that are no light, because they outshine their neighbours.
     pub fireflies: usize,
     /// Column and row of the first of them in the picture.
     pub first_firefly: Option<(i32, i32)>,
-    /// The largest luminance that a pixel gives, fireflies left out; 0 for a black photo.
+    /// The largest brightness that a pixel gives, fireflies left out; 0 for a black photo.
     pub peak: f64,
 }
 
 impl Found {
     /// How many regions joined a brighter one.
     pub fn merged(&self) -> usize {
-        self.regions - self.lights.len() - self.dropped
+        self.regions - self.lights.len() - self.dropped - self.joined
     }
 
     /// Counts lengths in another unit, of which there are `factor` in the one before.
@@ -97,15 +133,16 @@ impl Found {
 
 /// Finds the lights among the stored pixels of a photo, brightest first.
 ///
-/// `emission` says how a pixel gives light; the weights of linear R, G and B in luminance alone say that alpha is not
-/// looked at. A pixel with a channel that is not finite is never light, and a negative channel counts as 0.
+/// `emission` says how a pixel gives light, and the options by which brightness it is told; the weights of linear R, G and B in
+/// luminance alone say that alpha is not looked at, and that it is told by luminance. A pixel with a channel that is not finite is never light, and a negative channel counts as 0.
 ///
 /// # Panics
 ///
 /// If there are not as many pixels as `frame.window` holds.
 pub fn find(pixels: &[[f32; 4]], frame: &Frame, emission: impl Into<Emission>, options: &FindOptions) -> Found {
     assert_eq!(pixels.len(), frame.window.pixels(), "the pixels do not fill the frame's window");
-    let lit = Lit::new(pixels, frame.window.width as usize, emission.into(), options.firefly_limit);
+    let emission = emission.into().by(options.by);
+    let lit = Lit::new(pixels, frame.window.width as usize, emission, options.firefly_limit);
     let (threshold, rule) = match options.threshold {
         Some(given) => (given, Rule::Given),
         None => threshold::automatic(&lit),
@@ -120,15 +157,29 @@ pub fn find(pixels: &[[f32; 4]], frame: &Frame, emission: impl Into<Emission>, o
     let radius = (options.merge / frame.pixel_size()).min(diagonal);
     let mut lights = merge(found, radius, pixels.len() as f64 * frame.pixel_aspect);
     lights.sort_by(brightest_first);
-    let dropped = lights.split_off(options.max_lights.min(lights.len()));
+    let beyond = lights.split_off(options.max_lights.min(lights.len()));
+    let beyond_share = beyond.iter().fold(0.0, |sum, region| sum + region.weight / total);
+    // Where none is kept there is none to be joined.
+    let joins = options.beyond == Beyond::Join && !lights.is_empty();
+    if joins && !beyond.is_empty() {
+        join(&mut lights, &beyond);
+        lights.sort_by(brightest_first);
+    }
+    let [(joined, joined_share), (dropped, dropped_share)] = match joins {
+        true => [(beyond.len(), beyond_share), (0, 0.0)],
+        false => [(0, 0.0), (beyond.len(), beyond_share)],
+    };
     Found {
         lights: lights.iter().map(|region| light(region, frame)).collect(),
         shares: lights.iter().map(|region| region.weight / total).collect(),
+        by: emission.by,
         threshold,
         rule,
         regions,
-        dropped: dropped.len(),
-        dropped_share: dropped.iter().fold(0.0, |sum, region| sum + region.weight / total),
+        dropped,
+        dropped_share,
+        joined,
+        joined_share,
         fireflies: fireflies.len(),
         first_firefly: fireflies.first().map(|&(i, j)| (frame.window.x + i as i32, frame.window.y + j as i32)),
         peak: lit.peak().into(),
@@ -183,6 +234,17 @@ fn merge(regions: Vec<Moments>, radius: f64, area: f64) -> Vec<Moments> {
         }
     }
     kept
+}
+
+/// Adds the light of others to the nearest of the lights that are kept, wherever those are by what they have taken.
+fn join(kept: &mut [Moments], others: &[Moments]) {
+    let nearest = Nearest::new(kept.iter().map(|region| region.mean).collect());
+    let places: Vec<Option<usize>> = others.par_iter().map(|other| nearest.to(other.mean)).collect();
+    for (place, other) in places.into_iter().zip(others) {
+        if let Some(at) = place {
+            kept[at].absorb(other);
+        }
+    }
 }
 
 /// Which discs reach into which square cell of the plane.

@@ -31,9 +31,9 @@ pub(super) struct Lit<'a> {
 /// What is seen of some rows, fireflies apart.
 #[derive(Default)]
 struct Seen {
-    /// Pixels that outshine their neighbours, in order, with their luminance.
+    /// Pixels that outshine their neighbours, in order, with their brightness.
     alone: Vec<(usize, f32)>,
-    /// The luminance of all others.
+    /// The brightness of all others.
     sum: f64,
     peak: f32,
 }
@@ -48,9 +48,9 @@ impl<'a> Lit<'a> {
         lit.peak = bands.iter().fold(0.0, |peak, seen| seen.peak.max(peak));
         let has_lamp = f64::from(lit.peak) * pixels.len() as f64 > STANDS_OUT * sum;
         let dark = if has_lamp { f64::INFINITY } else { sum * ALL_THE_LIGHT };
-        for &(index, luminance) in bands.iter().flat_map(|seen| &seen.alone) {
-            if f64::from(luminance) > dark {
-                lit.peak = lit.peak.max(luminance);
+        for &(index, brightness) in bands.iter().flat_map(|seen| &seen.alone) {
+            if f64::from(brightness) > dark {
+                lit.peak = lit.peak.max(brightness);
             } else {
                 lit.fireflies.push(index);
             }
@@ -64,29 +64,29 @@ impl<'a> Lit<'a> {
             // Nearly every pixel fails to outshine the one before it, which costs nothing to find out.
             let mut before = f32::NEG_INFINITY;
             for (column, pixel) in self.row(row).iter().enumerate() {
-                let luminance = self.emission.luminance(pixel);
-                if luminance > limit * before && self.outshines(column, row, luminance, limit) {
-                    seen.alone.push((row * self.width + column, luminance));
+                let brightness = self.emission.brightness(pixel);
+                if brightness > limit * before && self.outshines(column, row, brightness, limit) {
+                    seen.alone.push((row * self.width + column, brightness));
                 } else {
-                    seen.sum += f64::from(luminance);
-                    seen.peak = seen.peak.max(luminance);
+                    seen.sum += f64::from(brightness);
+                    seen.peak = seen.peak.max(brightness);
                 }
-                before = luminance;
+                before = brightness;
             }
         }
         seen
     }
 
-    /// Whether a pixel of this luminance outshines all its neighbours, of which it has at least one.
-    fn outshines(&self, column: usize, row: usize, luminance: f32, limit: f32) -> bool {
-        if luminance <= 0.0 || limit.is_infinite() || self.pixels.len() == 1 {
+    /// Whether a pixel of this brightness outshines all its neighbours, of which it has at least one.
+    fn outshines(&self, column: usize, row: usize, brightness: f32, limit: f32) -> bool {
+        if brightness <= 0.0 || limit.is_infinite() || self.pixels.len() == 1 {
             return false;
         }
         let rows = row.saturating_sub(1)..(row + 2).min(self.pixels.len() / self.width);
         let columns = column.saturating_sub(1)..(column + 2).min(self.width);
         rows.flat_map(|j| columns.clone().map(move |i| (i, j)))
             .filter(|&at| at != (column, row))
-            .all(|(i, j)| luminance > limit * self.emission.luminance(&self.pixels[j * self.width + i]))
+            .all(|(i, j)| brightness > limit * self.emission.brightness(&self.pixels[j * self.width + i]))
     }
 
     fn row(&self, row: usize) -> &'a [[f32; 4]] {
@@ -114,23 +114,23 @@ impl<'a> Lit<'a> {
         (0..height.div_ceil(rows)).into_par_iter().map(move |band| band * rows..((band + 1) * rows).min(height))
     }
 
-    /// Calls `each(column, luminance)` for the pixels of a row from the left; that of a firefly is 0.
+    /// Calls `each(column, brightness)` for the pixels of a row from the left; that of a firefly is 0.
     pub fn each(&self, row: usize, mut each: impl FnMut(usize, f32)) {
         let start = row * self.width;
         let mut fireflies = self.fireflies[self.fireflies.partition_point(|&index| index < start)..].iter().peekable();
         for (column, pixel) in self.row(row).iter().enumerate() {
             let is_firefly = fireflies.next_if(|&&index| index == start + column).is_some();
-            each(column, if is_firefly { 0.0 } else { self.emission.luminance(pixel) });
+            each(column, if is_firefly { 0.0 } else { self.emission.brightness(pixel) });
         }
     }
 
-    /// Fireflies of at least this luminance: columns and rows, in the order of the pixels.
+    /// Fireflies of at least this brightness: columns and rows, in the order of the pixels.
     pub fn fireflies(&self, threshold: f32) -> Vec<(usize, usize)> {
-        let bright = |&&index: &&usize| is_light(self.emission.luminance(&self.pixels[index]), threshold);
+        let bright = |&&index: &&usize| is_light(self.emission.brightness(&self.pixels[index]), threshold);
         self.fireflies.iter().filter(bright).map(|index| (index % self.width, index / self.width)).collect()
     }
 
-    /// The largest luminance, fireflies left out; 0 where there is none.
+    /// The largest brightness, fireflies left out; 0 where there is none.
     pub fn peak(&self) -> f32 {
         self.peak
     }
@@ -140,9 +140,9 @@ impl<'a> Lit<'a> {
 mod tests {
     use super::*;
 
-    /// Fireflies of a picture of these luminances beyond a limit of 10.
-    fn fireflies(width: usize, luminances: &[f32]) -> Vec<(usize, usize)> {
-        let pixels: Vec<_> = luminances.iter().map(|&l| [l, l, l, 1.0]).collect();
+    /// Fireflies of a picture of these levels beyond a limit of 10.
+    fn fireflies(width: usize, levels: &[f32]) -> Vec<(usize, usize)> {
+        let pixels: Vec<_> = levels.iter().map(|&l| [l, l, l, 1.0]).collect();
         Lit::new(&pixels, width, [0.25, 0.5, 0.25].into(), 10.0).fireflies(0.5)
     }
 
@@ -151,9 +151,9 @@ mod tests {
         assert_eq!(fireflies(3, &[1.0, 1.0, 1.0, 1.0, 10.5, 1.0, 1.0, 1.0, 1.0]), [(1, 1)]);
         assert_eq!(fireflies(3, &[1.0, 1.0, 1.0, 1.0, 10.0, 1.0, 1.0, 1.0, 1.0]), []);
         for neighbour in [0, 1, 2, 3, 5, 6, 7, 8] {
-            let mut luminances = [1.0; 9];
-            (luminances[4], luminances[neighbour]) = (50.0, 5.0);
-            assert_eq!(fireflies(3, &luminances), [], "{neighbour}");
+            let mut levels = [1.0; 9];
+            (levels[4], levels[neighbour]) = (50.0, 5.0);
+            assert_eq!(fireflies(3, &levels), [], "{neighbour}");
         }
     }
 
@@ -166,26 +166,26 @@ mod tests {
 
     #[test]
     fn a_lamp_in_the_dark_is_none() {
-        let mut luminances = [0.0; 100];
-        luminances[37] = 50.0;
-        assert_eq!(fireflies(10, &luminances), []);
+        let mut levels = [0.0; 100];
+        levels[37] = 50.0;
+        assert_eq!(fireflies(10, &levels), []);
         // The rest has a hundredth of its light, and a little more.
-        (luminances[90], luminances[91]) = (0.3, 0.3);
-        assert_eq!(fireflies(10, &luminances), [(7, 3)]);
-        let pixels: Vec<_> = luminances.iter().map(|&l| [l, l, l, 1.0]).collect();
+        (levels[90], levels[91]) = (0.3, 0.3);
+        assert_eq!(fireflies(10, &levels), [(7, 3)]);
+        let pixels: Vec<_> = levels.iter().map(|&l| [l, l, l, 1.0]).collect();
         let lit = Lit::new(&pixels, 10, [0.25, 0.5, 0.25].into(), 10.0);
         let mut seen = Vec::new();
-        lit.each(3, |_, luminance| seen.push(luminance));
+        lit.each(3, |_, brightness| seen.push(brightness));
         assert_eq!((seen, lit.peak()), (vec![0.0; 10], 0.3));
     }
 
     #[test]
     fn a_firefly_in_the_dark_does_not_outdo_a_lamp() {
         // A lamp of four pixels, which have a thousandth of the firefly's light.
-        let mut luminances = [0.01; 400];
-        luminances[37] = 5e4;
-        assert_eq!(fireflies(20, &luminances), []);
-        [200, 201, 220, 221].iter().for_each(|&lamp| luminances[lamp] = 12.5);
-        assert_eq!(fireflies(20, &luminances), [(17, 1)]);
+        let mut levels = [0.01; 400];
+        levels[37] = 5e4;
+        assert_eq!(fireflies(20, &levels), []);
+        [200, 201, 220, 221].iter().for_each(|&lamp| levels[lamp] = 12.5);
+        assert_eq!(fireflies(20, &levels), [(17, 1)]);
     }
 }

@@ -4,12 +4,13 @@ use std::path::Path;
 
 use super::file;
 use super::lens::Lens;
+use super::sections::Version;
 use crate::{Error, Result};
 
 /// A lens file that is compiled in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Preset {
-    /// Its name, in kebab case.
+    /// Its name, in kebab case; after `v1/`, where it is one of version 1.
     pub name: &'static str,
     /// The lens file itself, to copy and change.
     pub toml: &'static str,
@@ -36,9 +37,26 @@ static PRESETS: [Preset; 8] = [
     preset!("eye"),
 ];
 
-/// Every preset.
+/// Those of looks of version 1, as they were: no table of these is changed.
+static VERSION_1: [Preset; 8] = [
+    preset!("v1/modern-prime"),
+    preset!("v1/classic-prime"),
+    preset!("v1/classic-veil"),
+    preset!("v1/anamorphic"),
+    preset!("v1/zoom"),
+    preset!("v1/vintage-uncoated"),
+    preset!("v1/haze-filter"),
+    preset!("v1/eye"),
+];
+
+/// Every preset of today.
 pub fn all() -> &'static [Preset] {
     &PRESETS
+}
+
+/// Every preset of looks of version 1, called `v1/` and the name that they have there.
+pub fn of_version_1() -> &'static [Preset] {
+    &VERSION_1
 }
 
 /// No lens: one without ghosts, for a veil alone.
@@ -57,15 +75,36 @@ pub fn named(name: &str) -> Result<Lens> {
     find(name)?.lens()
 }
 
+/// The lens of the preset that a file of a version calls `name`: in one of version 1, that of then.
+///
+/// # Errors
+///
+/// [`Error::UnknownPreset`], which lists the names there are.
+pub fn named_in(version: Version, name: &str) -> Result<Lens> {
+    if version == Version::Two || name == NO_LENS {
+        return named(name);
+    }
+    let plain = name.strip_prefix(V1).unwrap_or(name);
+    let found = VERSION_1.iter().find(|preset| preset.name[V1.len()..] == *plain);
+    found.ok_or_else(|| unknown(name, VERSION_1.iter().map(|preset| &preset.name[V1.len()..])))?.lens()
+}
+
+/// What stands before the names of presets of version 1.
+const V1: &str = "v1/";
+
 /// The preset that is called `name`.
 ///
 /// # Errors
 ///
 /// [`Error::UnknownPreset`], which lists the names there are.
 pub fn find(name: &str) -> Result<&'static Preset> {
-    let known = || PRESETS.iter().map(|preset| preset.name.to_owned()).collect();
-    let found = PRESETS.iter().find(|preset| preset.name == name);
-    found.ok_or_else(|| Error::UnknownPreset { name: name.to_owned(), known: known() })
+    let list = if name.starts_with(V1) { &VERSION_1[..] } else { &PRESETS };
+    let found = list.iter().find(|preset| preset.name == name);
+    found.ok_or_else(|| unknown(name, list.iter().map(|preset| preset.name)))
+}
+
+fn unknown<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Error {
+    Error::UnknownPreset { name: name.to_owned(), known: known.map(str::to_owned).collect() }
 }
 
 impl Preset {
@@ -123,6 +162,27 @@ mod tests {
             "{message}"
         );
         assert!(PRESETS.iter().all(|p| p.name.chars().all(|c| c.is_ascii_lowercase() || c == '-')));
+    }
+
+    #[test]
+    fn those_of_version_1_go_by_their_version_or_by_their_name() {
+        let (eye, old) = (named("eye").unwrap(), named("v1/eye").unwrap());
+        assert_eq!((&*eye.name, &*old.name), ("eye", "v1/eye"));
+        for name in ["eye", "v1/eye"] {
+            assert_eq!(named_in(Version::One, name).unwrap(), old);
+        }
+        assert_eq!(named_in(Version::Two, "eye").unwrap(), eye);
+        assert_eq!(named_in(Version::One, NO_LENS).unwrap(), named(NO_LENS).unwrap());
+        let veiled: Vec<_> = of_version_1().iter().filter(|preset| preset.lens().unwrap().veil.is_some()).collect();
+        assert_eq!(veiled.iter().map(|preset| preset.name).collect::<Vec<_>>(), ["v1/classic-veil"]);
+        for (said, ways) in [
+            (named("zom"), ["did you mean zoom?", "v1/NAME"]),
+            (named("v1/zom"), ["did you mean v1/zoom?", "v1/eye"]),
+            (named_in(Version::One, "zom"), ["did you mean zoom?", "\"zom\""]),
+        ] {
+            let said = said.unwrap_err().to_string();
+            assert!(ways.iter().all(|way| said.contains(way)), "{said}");
+        }
     }
 
     #[test]

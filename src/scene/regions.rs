@@ -19,11 +19,11 @@ use super::lit::Lit;
 pub(super) struct Moments {
     /// Sum of radiance, RGB, as much as its pixel gives of it.
     pub flux: [f64; 3],
-    /// Sum of luminance.
+    /// Sum of brightness.
     pub weight: f64,
-    /// Mean position, weighted by luminance.
+    /// Mean position, weighted by brightness.
     pub mean: DVec2,
-    /// Sum of luminance times the squared distance from the mean.
+    /// Sum of brightness times the squared distance from the mean.
     pub spread: f64,
 }
 
@@ -50,7 +50,7 @@ impl Moments {
     fn of_run(pixels: &[[f32; 4]], emission: Emission, i: usize, j: usize, aspect: f64) -> Self {
         let (mut flux, mut sums) = ([0.0; 3], [0.0; 3]);
         for (k, pixel) in pixels.iter().enumerate() {
-            let (l, k) = (f64::from(emission.luminance(pixel)), k as f64);
+            let (l, k) = (f64::from(emission.brightness(pixel)), k as f64);
             let share = f64::from(emission.share(pixel));
             sums[0] += l;
             sums[1] += l * k;
@@ -117,8 +117,8 @@ impl Band {
 /// Calls `found(start, end)` for each run of light in a row, from the left.
 fn each_run(lit: &Lit<'_>, row: usize, threshold: f32, mut found: impl FnMut(usize, usize)) {
     let mut start = None;
-    lit.each(row, |column, luminance| {
-        if is_light(luminance, threshold) {
+    lit.each(row, |column, brightness| {
+        if is_light(brightness, threshold) {
             start.get_or_insert(column);
         } else if let Some(start) = start.take() {
             found(start, column);
@@ -222,8 +222,9 @@ fn stitch(bands: Vec<Band>) -> Vec<Moments> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::choices::LightBy;
 
-    const EMISSION: Emission = Emission { weights: [0.25, 0.5, 0.25], straight: false };
+    const EMISSION: Emission = Emission { weights: [0.25, 0.5, 0.25], straight: false, by: LightBy::Luminance };
 
     fn regions(pixels: &[[f32; 4]], width: usize, threshold: f32) -> Vec<Moments> {
         super::regions(&Lit::new(pixels, width, EMISSION, 0.0), threshold, 1.0)

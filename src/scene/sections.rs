@@ -6,7 +6,27 @@ use toml::Spanned;
 use super::FindOptions;
 use super::bells::Fault;
 use super::number::{Allowed, IsFactor, IsField, IsFraction, IsNotNegative, IsPositive, NotNegative, Number, plain};
-use crate::choices::{Evaluator, LengthUnit, Mix, Normalize, Sources};
+use crate::choices::{Beyond, Evaluator, LengthUnit, LightBy, Mix, Normalize, Sources};
+
+/// What a scene file means by what it does not say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Version {
+    /// That of files without a version: lights that are found, few of them, seen through the lenses of then.
+    One,
+    /// Today's: every pixel is a source.
+    #[default]
+    Two,
+}
+
+impl Version {
+    /// Its number, as a file says it.
+    pub fn number(self) -> u32 {
+        match self {
+            Self::One => 1,
+            Self::Two => 2,
+        }
+    }
+}
 
 /// `[look]`; what is `None` is left to the command line and its defaults.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -42,7 +62,10 @@ pub struct LookSection {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FindSection {
-    /// The luminance from which on a pixel is light, 0 or more, in the photo's unit.
+    /// What tells light from the rest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub by: Option<LightBy>,
+    /// The brightness from which on a pixel is light, 0 or more, in the photo's unit.
     #[serde(default, deserialize_with = "number::<_, IsNotNegative>", skip_serializing_if = "Option::is_none")]
     pub threshold: Option<f64>,
     /// How close regions are that become one light, 0 or more, in half picture heights.
@@ -51,6 +74,9 @@ pub struct FindSection {
     /// Most lights.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_lights: Option<usize>,
+    /// What becomes of the others.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub beyond: Option<Beyond>,
     /// How many times as bright as its brightest neighbour a single pixel may be, and still is light: at least 1, or 0 for
     /// whatever it likes.
     #[serde(default, deserialize_with = "number::<_, IsFactor>", skip_serializing_if = "Option::is_none")]
@@ -136,13 +162,18 @@ fn colour<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<[f64; 3]>
 }
 
 impl FindSection {
-    /// What counts as a light, with the defaults of what is left open.
-    pub fn options(self) -> FindOptions {
-        let default = FindOptions::default();
+    /// What counts as a light, with the defaults that a version has for what is left open.
+    pub fn options(self, version: Version) -> FindOptions {
+        let default = match version {
+            Version::One => FindOptions::VERSION_1,
+            Version::Two => FindOptions::default(),
+        };
         FindOptions {
+            by: self.by.unwrap_or(default.by),
             threshold: self.threshold,
             merge: self.merge.unwrap_or(default.merge),
             max_lights: self.max_lights.unwrap_or(default.max_lights),
+            beyond: self.beyond.unwrap_or(default.beyond),
             firefly_limit: self.firefly_limit.unwrap_or(default.firefly_limit),
             knee: self.knee.unwrap_or(default.knee),
         }

@@ -2,20 +2,30 @@
 
 use glam::DVec2;
 use serde::Deserialize;
-use toml::Spanned;
+use serde::de::IgnoredAny;
+use toml::{Spanned, Value};
 
 use super::bells::{BellKeys, BellName, Bells, Fault, ProfileTable};
 use super::number::{Degree, Finite, NotNegative, Number, Positive, Sizes, plain};
 use super::presets;
-use super::sections::{AccuracyTable, FindSection, LookSection};
+use super::sections::{AccuracyTable, FindSection, LookSection, Version};
 use super::veil::VeilTable;
 use super::{Ghost, LensGhost, Light};
 use crate::choices::LengthUnit;
+
+/// The version of a scene file, whatever else is in it: one that is not known may have other keys.
+#[derive(Deserialize)]
+pub(super) struct VersionTable {
+    version: Option<Spanned<Value>>,
+}
 
 /// A scene file; also a file of lights alone.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct SceneTable {
+    /// See [`VersionTable`].
+    #[serde(rename = "version")]
+    _version: Option<IgnoredAny>,
     #[serde(default)]
     pub description: String,
     pub preset: Option<Spanned<String>>,
@@ -121,16 +131,33 @@ impl From<LightTable> for Light {
     }
 }
 
+impl VersionTable {
+    /// What the file means by what it does not say.
+    pub fn version(&self) -> Result<Version, Fault> {
+        let Some(version) = &self.version else { return Ok(Version::One) };
+        let newest = Version::default().number();
+        let message = match version.as_ref() {
+            Value::Integer(1) => return Ok(Version::One),
+            Value::Integer(2) => return Ok(Version::Two),
+            Value::Integer(later) if *later > newest.into() => format!(
+                "this file is of version {later}, and this vglare knows versions 1 and {newest}: a newer one may read it"
+            ),
+            other => format!("expected version 1 or {newest}, found {other}"),
+        };
+        Err(Fault { span: version.span(), message: format!("{message} in `version`") })
+    }
+}
+
 impl SceneTable {
     /// The preset that the lens is, if it is one.
-    pub fn preset(&self) -> Result<Option<String>, Fault> {
+    pub fn preset(&self, version: Version) -> Result<Option<String>, Fault> {
         let Some(preset) = &self.preset else { return Ok(None) };
         let fault = |message: String| Fault { span: preset.span(), message };
         if !self.lens_ghosts.is_empty() {
             return Err(fault("expected either `preset` or [[lens_ghost]], found both".into()));
         }
-        presets::named(preset.as_ref()).map_err(|error| fault(error.to_string()))?;
-        Ok(Some(preset.as_ref().clone()))
+        let found = presets::named_in(version, preset.as_ref()).map_err(|error| fault(error.to_string()))?;
+        Ok(Some(found.name))
     }
 }
 

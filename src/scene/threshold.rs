@@ -1,4 +1,5 @@
-//! From which luminance on a pixel counts as light.
+//! From which luminance on a pixel counts as light; or from which value of its brightest channel on, where light is told by
+//! that, which is meant here by luminance, too.
 //!
 //! Glare is made of flux, so the rule looks at where the flux is, not at where the pixels are. A histogram of
 //! log-luminance, each bin weighted by the flux that its pixels carry, is split in two by Otsu's method \[O79\]: of all

@@ -41,6 +41,7 @@ pub(crate) fn checked_toml(path: &Path, scene: &SceneFile) -> Result<String> {
 pub fn to_toml(scene: &SceneFile) -> String {
     let mut profiles = Profiles::default();
     let out = SceneOut {
+        version: scene.version.number(),
         description: &scene.description,
         preset: scene.preset.as_deref(),
         axis: scene.axis,
@@ -63,6 +64,7 @@ pub fn to_toml(scene: &SceneFile) -> String {
 
 #[derive(Serialize)]
 struct SceneOut<'a> {
+    version: u32,
     #[serde(skip_serializing_if = "str::is_empty")]
     description: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -191,9 +191,11 @@ impl Document {
         self.selected_ghost = None;
     }
 
-    /// What is set, as far as it is known what it means: while the photo is searched anew, with the search before.
+    /// What is set, as far as it is known what it means: while the photo is searched anew, with the search before. What needs no
+    /// search, as a threshold of all pixels, counts at once.
     pub fn known_look(&self) -> Look {
-        Look { find: self.searched, ..self.look.clone() }
+        let find = if self.look.searches() { self.searched } else { self.look.find };
+        Look { find, ..self.look.clone() }
     }
 
     /// Whether the photo has to be searched anew.
@@ -383,10 +385,11 @@ mod tests {
         let mut pixels = vec![[0.1, 0.1, 0.1, 1.0]; 8 * 16];
         pixels[3 * 8 + 6] = [90.0, 90.0, 90.0, 1.0];
         pixels[3 * 8 + 7] = [90.0, 90.0, 90.0, 1.0];
-        let by_height = Look { unit: LengthUnit::Height, ..Look::default() };
+        let found = Look { lights: LookLights::Found, ..Look::default() };
+        let by_height = Look { unit: LengthUnit::Height, ..found.clone() };
         let mut document = Document::new(Path::new("a.exr"), Photo::new(8, 16, pixels), by_height.clone());
         let (before, place) = (document.found.lights[0], document.place(document.found.lights[0].position));
-        document.set_look(Look { unit: LengthUnit::ShortSide, ..Look::default() });
+        document.set_look(Look { unit: LengthUnit::ShortSide, ..found });
         let after = document.found.lights[0];
         assert_eq!((after.position, after.size), (2.0 * before.position, 2.0 * before.size));
         assert_eq!(after.flux, before.flux.map(|flux| 4.0 * flux));
@@ -428,7 +431,8 @@ mod tests {
 
     #[test]
     fn a_gesture_is_one_step_and_an_edit_lists_the_lights() {
-        let mut document = Document::new(Path::new("a.exr"), Photo::new(2, 1, vec![[0.5; 4]; 2]), Look::default());
+        let look = Look { lights: LookLights::Found, ..Look::default() };
+        let mut document = Document::new(Path::new("a.exr"), Photo::new(2, 1, vec![[0.5; 4]; 2]), look);
         for strength in [2.0, 3.0, 4.0] {
             document.look.strength = strength;
             document.record(true);

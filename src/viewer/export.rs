@@ -140,7 +140,7 @@ fn computer() -> Result<Computer> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::look::LookLens;
+    use crate::look::{LookLens, LookLights};
     use crate::scene::FindOptions;
 
     /// A grey photo with a lamp.
@@ -152,7 +152,8 @@ mod tests {
 
     #[test]
     fn a_job_starts_from_what_the_window_has_found() {
-        let look = Look { lens: LookLens::preset("zoom").unwrap(), ..Look::default() };
+        let lens = LookLens::preset("zoom").unwrap();
+        let look = Look { lens, lights: LookLights::Found, veil: None, ..Look::default() };
         let document = Document::new(Path::new("a.exr"), photo(), look.clone());
         // A search would give the lamp another flux than this.
         let mut known = document.found.clone();

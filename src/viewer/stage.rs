@@ -13,6 +13,7 @@ use super::study::{Picture, Study};
 use super::timings::Timings;
 use super::veiling::Veiling;
 use super::viewing::Shows;
+use crate::choices::LightBy;
 use crate::frame::Frame;
 use crate::gpu::{Device, Screen};
 use crate::job::{self, Known};
@@ -67,8 +68,8 @@ struct Made {
     look: Option<Look>,
     frame: Option<Frame>,
     picture: Option<(Settings, Shows)>,
-    /// The light of the photo's bright pixels, for a threshold and a unit of lengths.
-    bright: Option<((f64, f64), [f64; 3])>,
+    /// The light of the photo's bright pixels, for a threshold of some brightness and a unit of lengths.
+    bright: Option<((LightBy, f64, f64), [f64; 3])>,
     /// The light of all pixels, once it was asked for, in the unit of its frame.
     raster: Option<(Knee, Arc<Raster>)>,
     /// The constant term of the spectrum that is there, once it was asked for.
@@ -185,10 +186,13 @@ impl Stage {
             self.made.scene = Some(Gathered { images, ..look.gather_from(Some(document.found.clone())) });
         }
         let Some(scene) = &self.made.scene else { return Ok(()) };
-        let bright = &mut self.made.bright;
+        let (bright, by) = (&mut self.made.bright, look.find.by);
         let (mut settings, _) = job::settings(look, &document.photo, scene, |threshold| match *bright {
-            Some((known, light)) if known == (threshold, whole.unit) => light,
-            _ => bright.insert(((threshold, whole.unit), job::bright_light(&document.photo, &whole, threshold))).1,
+            Some((known, light)) if known == (by, threshold, whole.unit) => light,
+            _ => {
+                let light = job::bright_light(&document.photo, &whole, by, threshold);
+                bright.insert(((by, threshold, whole.unit), light)).1
+            }
         })?;
         if work >= Work::Plan {
             // Pixels are not looked at one by one while they move.

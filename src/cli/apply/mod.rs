@@ -34,13 +34,13 @@ pub use run::run;
 
 /// Lay glare over a photo
 ///
-/// Finds the lights in the photo (or takes them from a file), makes the ghosts that the lens turns them into, computes
-/// their sum to the tolerance, adds it to the photo and writes the picture in the format that OUTPUT's extension names.
+/// Makes the ghosts that the lens turns every pixel of the photo into (or the lights that are found in it, or those of a file),
+/// computes their sum to the tolerance, adds it to the photo and writes the picture in the format that OUTPUT's extension names.
 ///
 /// Several photos, as the frames of a shot, are done in one run, in which the next is read and the last written while one
 /// is computed. OUTPUT then is a folder, which is made if need be, or a pattern. Each photo has lights, a plan and a
-/// measured error of its own. What is found in each photo for itself can change from frame to frame more than the scene
-/// does, and flicker: --threshold, --lights or --scene says for all what glares, and --normalize minmax stretches each
+/// measured error of its own. With --sources lights, what is found in each photo for itself can change from frame to frame more
+/// than the scene does, and flicker: --threshold, --lights or --scene says for all what glares. --normalize minmax stretches each
 /// photo by its own glare.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
@@ -103,12 +103,13 @@ const EXAMPLES: &str = "\
 Examples:
   vglare apply night.exr -o night.png
   vglare apply night.exr -o veiled.exr --preset vintage-uncoated --strength 1.5
+  vglare apply night.exr -o veiled.exr --sources lights
   vglare apply night.exr -o veiled.exr --glare glare.exr --report report.json
   vglare apply night.exr -o veiled.exr --scene scene.toml --tolerance 1e-4 --strict
   vglare apply night.exr -o veiled.exr --veil cie --age 60 --fov 50 --projection planar --lens none
   vglare apply night.exr -o veiled.exr --budget 20 --verify full
   vglare apply night.exr --glare glare.exr --depth half
-  vglare apply shot.*.exr -o veiled/ --threshold 20
+  vglare apply shot.*.exr -o veiled/
   vglare apply shot.*.exr -o 'veiled.####.exr' --glare 'glare.####.exr' --report report.json
   vglare apply shot.*.exr -o 'previews/{name}.png' --keep-going --quiet";
 
@@ -118,7 +119,7 @@ impl Args {
     /// # Errors
     /// Those of [`SceneArgs::look`].
     pub fn look(&self) -> Result<Look> {
-        let look = self.look.over(self.veil.over(self.scene.look()?, self.accuracy.tolerance())?);
+        let look = self.look.over(self.veil.over(self.scene.look(&self.find)?, self.accuracy.tolerance())?);
         let (find, accuracy) = (self.find.over(look.find), self.accuracy.over(look.accuracy));
         self.scene.unit.check(&look)?;
         Ok(Look { find, accuracy, ..look })
@@ -247,7 +248,7 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
-    use crate::choices::{Evaluator, LengthUnit, Mix, Normalize};
+    use crate::choices::{Beyond, Evaluator, LengthUnit, LightBy, Mix, Normalize};
     use crate::look::{Accuracy, LookLens, LookLights};
     use crate::options::command_line;
     use crate::scene::{FindOptions, Goal, Light, presets, write_scene};
@@ -280,7 +281,16 @@ mod tests {
             axis: DVec2::new(-0.1, 1.0 / 3.0),
             size: 0.7,
             tint: [1.0, 0.1, 0.0],
-            find: FindOptions { threshold: Some(1e-7), merge: 0.0, max_lights: 5, firefly_limit: 0.0, knee: 0.25 },
+            lights: LookLights::Found,
+            find: FindOptions {
+                by: LightBy::Luminance,
+                threshold: Some(1e-7),
+                merge: 0.0,
+                max_lights: 5,
+                beyond: Beyond::Drop,
+                firefly_limit: 0.0,
+                knee: 0.25,
+            },
             strength: 1e9,
             mix: Mix::Energy,
             normalize: Normalize::Minmax,
@@ -300,7 +310,9 @@ mod tests {
         let accuracy = Accuracy { goal: Goal::Budget(16.7), ..Accuracy::default() };
         let eye = Look { lens: LookLens::preset("eye").unwrap(), ..Look::default() };
         let units = Look { unit: LengthUnit::Degrees, fov: Some(40.5), ..Look::default() };
-        for look in [Look::default(), changed(), Look { accuracy, ..Look::default() }, eye, units] {
+        let found = Look { lights: LookLights::Found, ..Look::default() };
+        let old = Look { lens: LookLens::preset("v1/eye").unwrap(), find: FindOptions::VERSION_1, ..found.clone() };
+        for look in [Look::default(), changed(), Look { accuracy, ..Look::default() }, eye, units, found, old] {
             assert_eq!(again(&look, None), look);
         }
     }
@@ -328,6 +340,8 @@ mod tests {
         let defaults = [
             ("preset", look.lens().name),
             ("axis", format!("{},{}", look.axis.x, look.axis.y)),
+            ("by", format!("{:?}", look.find.by).to_lowercase()),
+            ("beyond", format!("{:?}", look.find.beyond).to_lowercase()),
             ("merge", look.find.merge.to_string()),
             ("max_lights", look.find.max_lights.to_string()),
             ("firefly_limit", look.find.firefly_limit.to_string()),
@@ -347,6 +361,58 @@ mod tests {
     }
 
     #[test]
+    fn every_pixel_is_a_source_unless_somebody_means_lights() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+        file("old.toml", "");
+        file("new.toml", "version = 2\n");
+        file("listed.toml", "version = 2\n[[light]]\nposition = [0, 0]\nflux = [1, 1, 1]\n");
+        file("lights.toml", "[[light]]\nposition = [0, 0]\nflux = [1, 1, 1]\n");
+        let parsed = |options: &str| {
+            let line = options.replace('@', &format!("{}/", folder.path().display()));
+            let line = format!("vglare apply 'my night.exr' -o \"it's.png\" {line}");
+            let Cli { args } = clap::Parser::try_parse_from(shlex::split(&line).unwrap().into_iter().skip(1)).unwrap();
+            args.look().map_err(|error| error.to_string())
+        };
+        let sources = |options: &str| match parsed(options).unwrap().lights {
+            LookLights::Found => "found",
+            LookLights::Listed(_) => "listed",
+            LookLights::FoundAnd(_) => "found and listed",
+            LookLights::Photo(lights) if lights.is_empty() => "photo",
+            LookLights::Photo(_) => "photo and listed",
+        };
+        for (options, expected) in [
+            ("", "photo"),
+            ("--threshold 2 --knee 0.5", "photo"),
+            ("--sources photo", "photo"),
+            ("--sources lights", "found"),
+            ("--max-lights 5", "found"),
+            ("--lights @lights.toml", "listed"),
+            ("--lights @lights.toml --sources lights", "listed"),
+            ("--add-lights @lights.toml", "photo and listed"),
+            ("--add-lights @lights.toml --sources lights", "found and listed"),
+            ("--scene @old.toml", "found"),
+            ("--scene @old.toml --sources photo", "photo"),
+            ("--scene @new.toml", "photo"),
+            ("--scene @new.toml --max-lights 5", "found"),
+            ("--scene @listed.toml", "listed"),
+            ("--scene @listed.toml --max-lights 5", "listed"),
+            ("--scene @listed.toml --sources photo", "photo and listed"),
+        ] {
+            assert_eq!(sources(options), expected, "{options}");
+        }
+        for (options, named) in [("--lights @lights.toml", "--lights"), ("--max-lights 5", "--max-lights")] {
+            let said = parsed(&format!("--sources photo {options}")).unwrap_err();
+            assert!(said.contains(&format!("--sources photo cannot be used with {named}:")), "{said}");
+        }
+        // A lens of one's own has no veil but its own.
+        file("lens.toml", "[[lens_ghost]]\nalong = 1\nsize = 1\nshare = 0.1\n");
+        assert!(parsed("--preset eye").unwrap().veil.is_some());
+        assert_eq!(parsed("--scene @new.toml --lens @lens.toml").unwrap().veil, None);
+        assert!(parsed("--lens @lens.toml --veil gaussian --width 0.1 --scatter 0.1").unwrap().veil.is_some());
+    }
+
+    #[test]
     fn options_win_over_the_file() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("look.toml");
@@ -354,10 +420,11 @@ mod tests {
         write_scene(&path, &file, false).unwrap();
         let line = format!("vglare apply 'my night.exr' -o \"it's.png\" --scene {}", path.display());
         assert_eq!(look(&line), changed());
-        let given = "--preset classic-prime --axis 0,0 --size 1 --tint 1,1,1 --threshold 2 --merge 0.02 \
-                     --max-lights 64 --firefly-limit 1000 --knee 0 --strength 1 --mix add --normalize none --tolerance 0.001 --degree 1,1 \
+        let given = "--preset classic-prime --axis 0,0 --size 1 --tint 1,1,1 --by brightest --threshold 2 --merge 0.02 \
+                     --max-lights 4096 --beyond join --firefly-limit 1000 --knee 0 --strength 1 --mix add --normalize none --tolerance 0.001 --degree 1,1 \
                      --period 3,3 --evaluator grid";
         let expected = Look {
+            lights: LookLights::Found,
             find: FindOptions { threshold: Some(2.0), ..FindOptions::default() },
             accuracy: Accuracy {
                 allow_floor: true,

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::job::Job;
 use crate::certificate::Certificate;
-use crate::choices::{LengthUnit, Mix, Normalize, Sources};
+use crate::choices::{LengthUnit, LightBy, Mix, Normalize, Sources};
 use crate::cli::lights::FirefliesJson;
 use crate::cli::plan::CostModelReport;
 use crate::gpu::{Info, PassTime};
@@ -91,9 +91,14 @@ struct FirstBad {
 struct SceneReport<'a> {
     lens: Option<&'a str>,
     axis: [f64; 2],
+    lights_by: Option<LightBy>,
     threshold: Option<f64>,
     regions: Option<usize>,
     lights_dropped: Option<usize>,
+    /// Of the flux of all regions, as the next.
+    dropped_share: Option<f64>,
+    lights_joined: Option<usize>,
+    joined_share: Option<f64>,
     fireflies: Option<FirefliesJson>,
     lights: Vec<LightReport>,
     sources: Sources,
@@ -205,9 +210,13 @@ fn scene_report(scene: &Gathered, axis: DVec2) -> SceneReport<'_> {
     SceneReport {
         lens: scene.lens.as_ref().map(|lens| lens.name.as_str()),
         axis: axis.to_array(),
+        lights_by: found.map(|found| found.by),
         threshold: found.map(|found| found.threshold),
         regions: found.map(|found| found.regions),
         lights_dropped: found.map(|found| found.dropped),
+        dropped_share: found.map(|found| found.dropped_share),
+        lights_joined: found.map(|found| found.joined),
+        joined_share: found.map(|found| found.joined_share),
         fireflies: found.map(FirefliesJson::from),
         lights: scene
             .lights

@@ -125,11 +125,8 @@ fn about_found(out: &mut dyn Write, found: &Found, look: &Look) -> io::Result<()
     if found.regions == 0 {
         writeln!(out, "lights   none, so no glare of the photo's own: {}", found::none(found))?;
     } else {
-        write!(out, "lights   {} at luminance {:.4} and above", found.lights.len(), found.threshold)?;
-        match found.dropped {
-            0 => writeln!(out)?,
-            n => writeln!(out, "; {n} fainter ones left out, {:.1} % of the flux", 100.0 * found.dropped_share)?,
-        }
+        writeln!(out, "lights   {} at {} {:.4} and above", found.lights.len(), found.by, found.threshold)?;
+        found::beyond(found).iter().try_for_each(|beyond| writeln!(out, "         {beyond}"))?;
     }
     match found::fireflies(found, &look.find) {
         Some(fireflies) => writeln!(out, "         {fireflies}"),

@@ -79,7 +79,7 @@ fn size(text: &str) -> Result<[u32; 2], String> {
 /// Where the photo or a file of the scene cannot be read, where there is no plan, or standard output cannot be written.
 /// No OpenGL is no error.
 pub fn run(args: &Args) -> Result<()> {
-    let mut look = args.veil.over(args.scene.look()?, args.accuracy.tolerance())?;
+    let mut look = args.veil.over(args.scene.look(&args.find)?, args.accuracy.tolerance())?;
     args.scene.unit.check(&look)?;
     look.find = args.find.over(look.find);
     look.accuracy = args.accuracy.over(look.accuracy);
@@ -133,6 +133,7 @@ impl Told<'_> {
             if found.regions == 0 {
                 writeln!(out, "         no lights: {}", found::none(found))?;
             }
+            found::beyond(found).iter().try_for_each(|beyond| writeln!(out, "         {beyond}"))?;
             let fireflies = found::fireflies(found, &self.look.find);
             fireflies.iter().try_for_each(|fireflies| writeln!(out, "         {fireflies}"))?;
         }

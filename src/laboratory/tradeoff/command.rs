@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use comfy_table::{CellAlignment, Table, presets};
 
 use super::{Results, Subject, exponent, short};
+use crate::choices::Sources;
 use crate::gpu::Device;
 use crate::laboratory::tradeoff;
 use crate::look::Look;
@@ -87,7 +88,8 @@ pub fn run(args: &Args) -> Result<()> {
     let progress = Progress::start(args.quiet);
     let inputs: Vec<_> = std::iter::once(args.photo.clone()).chain(args.scene.files()).collect();
     tradeoff::spare(&args.output, &inputs)?;
-    let mut look = args.veil.over(args.scene.look()?, None)?;
+    // Lights, unless somebody asks for what cannot be had.
+    let mut look = args.veil.over(args.scene.look_unless(&args.find, Sources::Lights)?, None)?;
     args.scene.unit.check(&look)?;
     look.find = args.find.over(look.find);
     if look.takes_photo() {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::choices::{Evaluator, LengthUnit, Mix, Normalize, Sources};
+use crate::choices::{Beyond, Evaluator, LengthUnit, LightBy, Mix, Normalize, Sources};
 use crate::scene::Goal;
 use crate::series::Bell;
 
@@ -71,8 +71,31 @@ fn a_full_scene_is_read_with_whole_numbers_and_defaults() {
 
 #[test]
 fn an_empty_file_is_an_empty_scene() {
-    let (_folder, path) = file("empty.toml", "");
-    assert_eq!(read_scene(&path).unwrap(), SceneFile::default());
+    for (text, version) in [("", Version::One), ("version = 1", Version::One), ("version = 2\n", Version::Two)] {
+        let (_folder, path) = file("empty.toml", text);
+        assert_eq!(read_scene(&path).unwrap(), SceneFile { version, ..SceneFile::default() });
+    }
+}
+
+#[test]
+fn versions_that_there_are_not_are_refused_in_their_line() {
+    for bad in ["0", "-1", "\"2\"", "2.0", "true"] {
+        assert_refused(&format!("\nversion = {bad}"), &["line 2, column 11", "expected version 1 or 2, found", bad]);
+    }
+    let later = ["line 3, column 11", "of version 3", "knows versions 1 and 2", "a newer one", "in `version`"];
+    assert_refused("# a look\n\nversion = 3\n[dust]\nspecks = 7\n", &later);
+    // A preset of another version is called by its name.
+    for (text, preset) in [
+        ("preset = \"zoom\"", "v1/zoom"),
+        ("preset = \"v1/zoom\"", "v1/zoom"),
+        ("version = 2\npreset = \"zoom\"", "zoom"),
+        ("version = 2\npreset = \"v1/zoom\"", "v1/zoom"),
+        ("preset = \"none\"", "none"),
+    ] {
+        let (_folder, path) = file("look.toml", text);
+        assert_eq!(read_scene(&path).unwrap().preset.as_deref(), Some(preset), "{text}");
+    }
+    assert_refused("version = 2\npreset = \"v2/zoom\"", &["line 2, column 10", "v2/zoom", "v1/NAME"]);
 }
 
 #[test]
@@ -379,11 +402,11 @@ fn a_look_is_read_key_by_key() {
         "look.toml",
         "preset = \"zoom\"\naxis = [0.1, -2]\nlight = []\n[look]\nstrength = 0\nsize = 2\ntint = [1, 0, 2.5]\n\
          mix = \"energy\"\nnormalize = \"minmax\"\nunit = \"short-side\"\nfov = 40\nsources = \"photo\"\n[find]\nthreshold = 20\nmerge = 0\nmax_lights = 3\n\
-         firefly_limit = 0\nknee = 0.5\nadd = true\n\
+         by = \"luminance\"\nbeyond = \"drop\"\nfirefly_limit = 0\nknee = 0.5\nadd = true\n\
          [accuracy]\nbudget = 20\nallow_floor = true\nevaluator = \"rows\"\n",
     );
     let scene = read_scene(&path).unwrap();
-    assert_eq!((scene.preset.as_deref(), scene.axis), (Some("zoom"), Some(DVec2::new(0.1, -2.0))));
+    assert_eq!((scene.preset.as_deref(), scene.axis), (Some("v1/zoom"), Some(DVec2::new(0.1, -2.0))));
     assert_eq!(scene.lights, Some(Vec::new()));
     let look = LookSection {
         strength: Some(0.0),
@@ -397,6 +420,8 @@ fn a_look_is_read_key_by_key() {
     };
     assert_eq!(scene.look, look);
     let find = FindSection {
+        by: Some(LightBy::Luminance),
+        beyond: Some(Beyond::Drop),
         threshold: Some(20.0),
         merge: Some(0.0),
         max_lights: Some(3),

@@ -5,7 +5,7 @@ const REC709: [f64; 3] = [0.2126, 0.7152, 0.0722];
 const BLACK: [f32; 4] = [0.0, 0.0, 0.0, 1.0];
 
 fn given(threshold: f64) -> FindOptions {
-    FindOptions { threshold: Some(threshold), merge: 0.0, firefly_limit: 0.0, ..FindOptions::default() }
+    FindOptions { threshold: Some(threshold), merge: 0.0, ..FindOptions::VERSION_1 }
 }
 
 /// A black picture with these pixels.
@@ -108,6 +108,53 @@ fn the_cap_keeps_the_brightest_and_says_what_it_drops() {
 }
 
 #[test]
+fn lights_beyond_the_cap_join_the_nearest_and_no_flux_is_lost() {
+    let lights: Vec<_> = (0..10).map(|k| (10 * k, 3, [k as f32 + 1.0, 2.0, 0.0])).collect();
+    let (pixels, frame) = picture(100, 10, &lights);
+    let options = FindOptions { max_lights: 3, beyond: Beyond::Join, ..given(0.5) };
+    let found = find(&pixels, &frame, REC709, &options);
+    assert_eq!((found.lights.len(), found.regions, found.dropped, found.joined, found.merged()), (3, 10, 0, 7, 0));
+    assert!((found.shares.iter().sum::<f64>() - 1.0).abs() < 1e-12 && found.dropped_share == 0.0);
+    let area = frame.pixel_size().powi(2);
+    let flux = |colour: usize| found.lights.iter().map(|light| light.flux[colour]).sum::<f64>() / area;
+    assert!((flux(0) - 55.0).abs() < 1e-9 && (flux(1) - 20.0).abs() < 1e-9);
+    // Seven are left of the third, which comes first by now, in the middle of what it has taken.
+    let luminance = |k: u32| 0.2126 * (f64::from(k) + 1.0) + 2.0 * 0.7152;
+    let (weight, moment) =
+        (0..8).fold((0.0, 0.0), |(sum, moment), k| (sum + luminance(k), moment + luminance(k) * 10.0 * f64::from(k)));
+    let first = frame.pixel(found.lights[0].position);
+    assert!((first.x - moment / weight).abs() < 1e-5 && (first.y - 3.0).abs() < 1e-9, "{first}");
+    let total = (0..10).map(luminance).sum::<f64>();
+    let share = (0..7).map(luminance).sum::<f64>() / total;
+    assert!((found.joined_share - share).abs() < 1e-6, "{} {share}", found.joined_share);
+    assert!(found.lights[0].size > 0.4 && found.lights[1].size < 0.1, "{:?}", found.lights);
+    // Nobody is there to be joined.
+    let none = find(&pixels, &frame, REC709, &FindOptions { max_lights: 0, ..options });
+    assert_eq!((none.lights.len(), none.dropped, none.joined), (0, 10, 0));
+    assert!((none.dropped_share - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn lamps_of_any_colour_are_found_by_their_brightest_channel() {
+    let lamps = [(10, 5, [1.0, 0.05, 0.0]), (40, 5, [1.0, 0.5, 0.0]), (70, 5, [0.0, 0.1, 1.0]), (85, 5, [1.0; 3])];
+    let (mut pixels, frame) = picture(100, 10, &lamps);
+    pixels.iter_mut().filter(|pixel| **pixel == BLACK).for_each(|pixel| *pixel = [0.1, 0.1, 0.1, 1.0]);
+    let options = |by| FindOptions { by, threshold: Some(0.9), ..FindOptions::default() };
+    let found = find(&pixels, &frame, REC709, &options(LightBy::Brightest));
+    assert_eq!((found.lights.len(), found.by, found.peak), (4, LightBy::Brightest, 1.0));
+    assert!(found.shares.iter().all(|share| (share - 0.25).abs() < 1e-9), "{:?}", found.shares);
+    assert_eq!(find(&pixels, &frame, REC709, &options(LightBy::Luminance)).lights.len(), 1);
+    // Clipped highlights of a photo for a display, by themselves.
+    let patch = |x: u32, colour| (0..9).map(move |p| (x + p % 3, 20 + p / 3, colour));
+    let patch: Vec<_> = patch(20, [1.0, 0.1, 0.0]).chain(patch(60, [1.0; 3])).collect();
+    let (mut pixels, frame) = picture(100, 100, &patch);
+    pixels.iter_mut().filter(|pixel| **pixel == BLACK).for_each(|pixel| *pixel = [0.2, 0.2, 0.2, 1.0]);
+    let found = find(&pixels, &frame, REC709, &FindOptions::default());
+    assert_eq!((found.rule, found.lights.len()), (Rule::Clipped, 2));
+    assert_eq!(find(&pixels, &frame, REC709, &FindOptions::VERSION_1).lights.len(), 1);
+}
+
+#[test]
 fn equal_lights_come_from_the_top_and_then_from_the_left() {
     let (pixels, frame) = picture(9, 9, &[(7, 1, [1.0; 3]), (1, 7, [1.0; 3]), (1, 1, [1.0; 3])]);
     let found = find(&pixels, &frame, REC709, &given(0.5));
@@ -193,7 +240,7 @@ fn straight_alpha_takes_its_share_and_premultiplied_does_not() {
 fn a_picture_darker_than_black_has_no_lights() {
     let weights = [0.343_966, 0.728_166, -0.072_133];
     let (pixels, frame) = (vec![[0.0, 0.001, 0.4, 1.0]; 200], Frame::full(20, 10));
-    let found = find(&pixels, &frame, weights, &FindOptions::default());
+    let found = find(&pixels, &frame, weights, &FindOptions::VERSION_1);
     assert_eq!((found.lights.len(), found.threshold, found.peak), (0, 0.0, 0.0));
 }
 
@@ -244,6 +291,8 @@ fn a_hundred_thousand_regions_merge_in_a_moment() {
     let start = std::time::Instant::now();
     let found = find(&pixels, &frame, REC709, &given(0.5));
     assert_eq!((found.regions, found.dropped), (100_000, 100_000 - 64));
+    let joined = find(&pixels, &frame, REC709, &FindOptions { max_lights: 4096, beyond: Beyond::Join, ..given(0.5) });
+    assert_eq!((joined.lights.len(), joined.joined), (4096, 100_000 - 4096));
     let merged = find(&pixels, &frame, REC709, &FindOptions { merge: 0.02, max_lights: usize::MAX, ..given(0.5) });
     assert_eq!(merged.merged() + merged.lights.len(), 100_000);
     let (all, kept) = (lights.iter().map(|l| f64::from(l.2[0])).sum::<f64>(), frame.pixel_size().powi(2));

@@ -1,9 +1,9 @@
 use super::*;
 use crate::chance::Chance;
+use crate::choices::{Beyond, LengthUnit, LightBy, Mix, Normalize, Sources};
 use crate::choices::{Border, Projection};
-use crate::choices::{LengthUnit, Mix, Normalize, Sources};
 use crate::psf::{Name, Parameters};
-use crate::scene::{AccuracySection, read_scene};
+use crate::scene::{AccuracySection, Version, read_scene};
 use crate::series::{Disc, SineGaussian, VonMises};
 
 const PERIOD: DVec2 = DVec2::new(4.1, 3.3);
@@ -73,7 +73,8 @@ fn scene(chance: &mut Chance) -> SceneFile {
         let (along, size, tint, share) = (number(chance), size(chance), rgb(chance), positive(chance));
         LensGhost { bell: bell.clone(), along, size, tint, share }
     };
-    let preset = maybe(chance, |_| "zoom".to_owned());
+    // What either version calls so.
+    let preset = maybe(chance, |_| "v1/zoom".to_owned());
     let own = if preset.is_none() { bells.clone() } else { Vec::new() };
     let goals = [None, Some(Goal::Tolerance(chance.between(1e-9, 0.9))), Some(Goal::Budget(positive(chance)))];
     let some = (chance.between(0.0, 4.0)) as usize;
@@ -85,6 +86,7 @@ fn scene(chance: &mut Chance) -> SceneFile {
         tolerance: maybe(chance, |chance| chance.between(1e-4, 0.5)),
     });
     SceneFile {
+        version: one_of(chance, &[Version::One, Version::Two]),
         description: one_of(chance, &["", "two \"lamps\"\n\\ and é", "[look]"]).to_owned(),
         preset,
         axis: maybe(chance, point),
@@ -104,6 +106,8 @@ fn scene(chance: &mut Chance) -> SceneFile {
             sources: one_of(chance, &[None, Some(Sources::Photo), Some(Sources::Lights)]),
         },
         find: FindSection {
+            by: one_of(chance, &[None, Some(LightBy::Luminance), Some(LightBy::Brightest)]),
+            beyond: one_of(chance, &[None, Some(Beyond::Join), Some(Beyond::Drop)]),
             threshold: maybe(chance, positive),
             merge: maybe(chance, positive),
             max_lights: one_of(chance, &[None, Some(0), Some(7)]),
@@ -137,7 +141,7 @@ fn what_is_written_is_read_as_the_same_bit_for_bit() {
         assert_eq!(to_toml(&read), std::fs::read_to_string(&path).unwrap());
     }
     write_scene(&path, &SceneFile::default(), true).unwrap();
-    assert_eq!(std::fs::read_to_string(&path).unwrap(), "");
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), "version = 2\n");
 }
 
 #[test]
@@ -153,7 +157,8 @@ fn a_file_is_for_people_too() {
         ghosts: vec![Ghost { bell, center: DVec2::ZERO, size: DVec2::splat(0.4), radiance: [1.0, 0.5, 0.25] }],
         ..SceneFile::default()
     };
-    let expected = r#"preset = "zoom"
+    let expected = r#"version = 2
+preset = "zoom"
 axis = [0.0, -0.1]
 
 [look]
@@ -190,7 +195,7 @@ fn a_list_of_no_lights_is_not_the_same_as_no_list() {
         look: LookSection { size: Some(2.0), ..Default::default() },
         ..SceneFile::default()
     };
-    assert_eq!(to_toml(&none), "light = []\n\n[look]\nsize = 2.0\n");
+    assert_eq!(to_toml(&none), "version = 2\nlight = []\n\n[look]\nsize = 2.0\n");
 }
 
 #[test]
@@ -205,7 +210,7 @@ fn what_no_file_can_say_is_not_written() {
     let strength = |strength| LookSection { strength: Some(strength), ..LookSection::default() };
     let both = SceneFile { preset: Some("zoom".into()), ..scene(&mut Chance::new(1)) };
     let bad = [
-        (SceneFile { look: strength(f64::NAN), ..good.clone() }, "line 2, column 12"),
+        (SceneFile { look: strength(f64::NAN), ..good.clone() }, "line 4, column 12"),
         (SceneFile { look: strength(-1.0), ..good.clone() }, "not negative, found -1"),
         (SceneFile { preset: Some("fish-eye".into()), ..good.clone() }, "no lens preset is called \"fish-eye\""),
         (SceneFile { lens_ghosts: Vec::new(), ghosts: vec![periodic.clone()], ..good.clone() }, "`period`"),
@@ -218,7 +223,7 @@ fn what_no_file_can_say_is_not_written() {
     for (scene, reason) in bad {
         let error = write_scene(&path, &scene, true).unwrap_err().to_string();
         assert!(error.contains(reason) && error.contains("look.toml"), "{reason:?} is not in {error}");
-        assert_eq!(std::fs::read_to_string(&path).unwrap(), "");
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "version = 2\n");
     }
 }
 

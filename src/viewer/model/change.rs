@@ -75,7 +75,7 @@ mod tests {
 
     use super::super::{Accuracy, LookLens};
     use super::*;
-    use crate::choices::{Evaluator, Mix, Normalize};
+    use crate::choices::{Evaluator, LightBy, Mix, Normalize};
     use crate::scene::{FindOptions, Ghost, Goal, Light};
     use crate::series::Bell;
 
@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn every_part_of_a_look_has_its_step() {
-        let look = Look::default();
+        let look = Look { lights: LookLights::Found, ..Look::default() };
         let after = |change: fn(&mut Look)| changed(&look, change);
         assert_eq!(after(|_| {}), Work::Nothing);
         assert_eq!(after(|look| look.description = "new".into()), Work::Nothing);
@@ -106,6 +106,9 @@ mod tests {
         let ghost = Ghost { bell: Bell::Gaussian, center: DVec2::ZERO, size: DVec2::ONE, radiance: [1.0; 3] };
         assert_eq!(changed(&look, |look| look.ghosts.push(ghost)), Work::Ghosts);
         assert_eq!(after(|look| look.find = FindOptions { merge: 0.5, ..look.find }), Work::Lights);
+        assert_eq!(after(|look| look.find = FindOptions { by: LightBy::Luminance, ..look.find }), Work::Lights);
+        assert_eq!(after(|look| look.lights = Look::default().lights), Work::Ghosts);
+        assert_eq!(changed(&Look::default(), |look| look.find.merge = 0.5), Work::Nothing);
         assert_eq!(after(|look| look.unit = LengthUnit::Height), Work::Lights);
         assert_eq!(after(|look| look.fov = Some(40.0)), Work::Composite);
         let degrees = Look { unit: LengthUnit::Degrees, ..Look::default() };

@@ -174,7 +174,7 @@ mod tests {
     }
 
     fn edited(edit: impl FnOnce(&mut Look)) -> Vec<Light> {
-        let mut look = Look::default();
+        let mut look = Look { lights: LookLights::Found, ..Look::default() };
         edit(&mut look);
         let LookLights::Listed(lights) = look.lights else { panic!("an edit lists the lights") };
         lights.to_vec()
@@ -190,6 +190,15 @@ mod tests {
         assert_eq!(edited(|look| look.mute_light(&found(), 0, true)), [Light { muted: true, ..first }, second]);
         let flux = [0.5, 0.0, 3.0];
         assert_eq!(edited(|look| look.set_light_flux(&found(), 0, [0.5, -1.0, 3.0]))[0], Light { flux, ..first });
+    }
+
+    #[test]
+    fn a_light_is_added_beside_the_photos_pixels() {
+        let mut look = Look::default();
+        look.add_light(&found(), light(2.0));
+        assert_eq!(look.lights, LookLights::Photo(vec![light(2.0)].into()));
+        look.delete_light(&found(), 0);
+        assert_eq!(look, Look::default());
     }
 
     #[test]

@@ -4,16 +4,16 @@ use egui::{ScrollArea, Ui};
 use glam::DVec2;
 
 use super::{colour, ghosts};
-use crate::choices::Sources;
-use crate::scene::Light;
-use crate::viewer::control::{self, Number, button, cell, done_by, flag};
+use crate::choices::{Beyond, LightBy, Sources};
+use crate::scene::{Found, Light};
+use crate::viewer::control::{self, Number, button, cell, choice, done_by, flag};
 use crate::viewer::document::Document;
 use crate::viewer::model::LookLights;
 use crate::viewer::stage::Stage;
 
 const THRESHOLD: Number = Number {
     name: "Threshold",
-    about: "The luminance from which on a pixel is light; what it takes is marked on the picture meanwhile.",
+    about: "The brightness from which on a pixel is light; what it takes is marked on the picture meanwhile.",
     unit: "in the photo's unit",
     range: 0.0..=1e6,
     logarithmic: true,
@@ -39,9 +39,14 @@ const MOST: Number = Number {
     name: "Most",
     about: "At most so many lights are kept, the brightest.",
     unit: "lights",
-    range: 0.0..=1024.0,
+    range: 0.0..=65536.0,
     logarithmic: true,
 };
+
+const BY: [(LightBy, &str, &str); 2] = [
+    (LightBy::Brightest, "brightest channel", "A lamp of any colour is as bright as a white one"),
+    (LightBy::Luminance, "luminance", "Red and blue lamps are darker than white ones"),
+];
 
 const FIREFLIES: Number = Number {
     name: "Firefly limit",
@@ -177,8 +182,9 @@ fn find(ui: &mut Ui, document: &mut Document) {
     let whole = matches!(document.look.lights, LookLights::Photo(_));
     let (opened, found) = (document.opened.find, document.found.threshold);
     let find = &mut document.look.find;
+    choice(ui, "Told by", "What of a pixel tells light from the rest.", &mut find.by, &BY, opened.by);
     let mut automatic = find.threshold.is_none();
-    let about = "Lets the photo decide from which luminance on a pixel is light.";
+    let about = "Lets the photo decide from which brightness on a pixel is light.";
     if flag(ui, "By the photo", about, &mut automatic, opened.threshold.is_none()) {
         find.threshold = (!automatic).then_some(found);
     }
@@ -197,6 +203,11 @@ fn find(ui: &mut Ui, document: &mut Document) {
     if most != find.max_lights as f64 {
         find.max_lights = most.round() as usize;
     }
+    let (mut joins, by_default) = (find.beyond == Beyond::Join, opened.beyond == Beyond::Join);
+    let about = "Lets lights beyond the most join the nearest that is kept, so that no light is lost.";
+    if flag(ui, "Join the rest", about, &mut joins, by_default) {
+        find.beyond = if joins { Beyond::Join } else { Beyond::Drop };
+    }
     FIREFLIES.show(ui, &mut find.firefly_limit, opened.firefly_limit);
     if find.firefly_limit > 0.0 && find.firefly_limit < 1.0 {
         // Below 1 nearly every pixel would be one; the way to 0 leads through there.
@@ -206,6 +217,15 @@ fn find(ui: &mut Ui, document: &mut Document) {
     let (regions, threshold) = (document.found.regions, control::brief(document.found.threshold));
     let noun = if regions == 1 { "region" } else { "regions" };
     control::hint(ui, format!("{regions} {noun} from {threshold} on{searching}"));
+    match &document.found {
+        Found { joined: 0, dropped: 0, .. } => {}
+        Found { joined: 0, dropped, dropped_share, .. } => {
+            control::hint(ui, format!("{dropped} fainter lights left out, {} % of the flux", percent(*dropped_share)))
+        }
+        Found { joined, joined_share, .. } => {
+            control::hint(ui, format!("{joined} fainter lights joined, {} % of the flux", percent(*joined_share)))
+        }
+    }
     match document.found.fireflies {
         0 => {}
         1 => control::hint(ui, "1 firefly, which is no light"),
@@ -233,6 +253,11 @@ fn selected(ui: &mut Ui, document: &mut Document, index: usize) {
     if let Some(hue) = hue {
         document.look.set_light_colour(&document.found.lights, index, hue, weights);
     }
+}
+
+/// A share in percent, to a tenth.
+fn percent(share: f64) -> String {
+    control::brief((1e3 * share).round() / 10.0)
 }
 
 /// The mean of a light's colours.

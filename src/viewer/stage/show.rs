@@ -62,7 +62,7 @@ impl Stage {
             threshold,
             // A lamp in the dark outshines its neighbours, too.
             firefly_limit: if document.found.fireflies > 0 { document.look.find.firefly_limit } else { 0.0 },
-            emission: Emission::of(&document.photo),
+            emission: Emission::of(&document.photo).by(document.look.find.by),
             origin: placement.origin,
             pitch: placement.pitch,
         };
