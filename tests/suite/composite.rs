@@ -1,5 +1,6 @@
 //! The photo with its glare: nothing but the glare is added, and a bad pixel harms only itself.
 
+use vglare::choices::LightBy;
 use vglare::frame::Frame;
 use vglare::plan::{Evaluator, Plan, Request};
 use vglare::renderer::{Normalize, Picture, Settings};
@@ -163,7 +164,7 @@ fn light_is_taken_only_where_the_photo_is_bright_enough() {
 #[test]
 fn light_is_taken_by_what_a_pixel_gives_of_its_colour() {
     // Straight alpha gives its share, and a negative weight makes blue darker than black.
-    let emission = Emission { weights: [0.5, 0.75, -0.25], straight: true };
+    let emission = Emission { weights: [0.5, 0.75, -0.25], straight: true, by: LightBy::Luminance };
     let settings = Settings { light_gain: [0.5; 3], threshold: 1.0, emission, ..Settings::default() };
     let hidden = [0.0, 0.125, 0.5, f32::NAN].map(|alpha| [4.0, 4.0, 0.0, alpha]);
     let photo = [hidden[0], hidden[1], hidden[2], hidden[3], [0.0, 0.0, 90.0, 1.0], [2.0, 2.0, -90.0, 7.0]];

@@ -1,6 +1,7 @@
 //! What is light is decided in one way: by the search, by the mask over the window's photo, and by the composite.
 
 use glam::DVec2;
+use vglare::choices::LightBy;
 use vglare::frame::Frame;
 use vglare::gpu::{Backend, Screen};
 use vglare::plan::Evaluator;
@@ -46,18 +47,20 @@ fn search_mask_and_composite_take_the_same_pixels_for_light() {
     let plan = plan_with(&[], frame, 1e-2, Evaluator::Rows);
     on_live(Backend::ALL[0], |live| {
         live.picture.field.set_scene(&plan).unwrap();
-        for (index, straight) in (0..6).map(|case| (case / 2, case % 2 == 1)) {
-            let emission = Emission { straight, ..weights[index].into() };
+        let by = |case| if case < 6 { LightBy::Luminance } else { LightBy::Brightest };
+        // The brightest channel has no weights.
+        for (index, straight, by) in (0..8).map(|case| (case % 6 / 2, case % 2 == 1, by(case))) {
+            let emission = Emission { straight, by, ..weights[index].into() };
             let pixels = pixels(7 + index as u64);
             // Thresholds at which pixels lie exactly, and those that leave nothing out, or all.
-            let exact = pixels.iter().step_by(301).map(|pixel| emission.luminance(pixel));
+            let exact = pixels.iter().step_by(301).map(|pixel| emission.brightness(pixel));
             let thresholds: Vec<f32> = exact.chain([0.0, 21.2, f32::MAX, f32::INFINITY]).collect();
             live.picture.load(frame, &pixels).unwrap();
             let screen = Screen::hidden(live.picture.field.device(), [SIDE, SIDE]).unwrap();
             for threshold in thresholds {
                 let what = format!("{emission:?} from {threshold} on");
                 let light: Vec<bool> =
-                    pixels.iter().map(|pixel| is_light(emission.luminance(pixel), threshold)).collect();
+                    pixels.iter().map(|pixel| is_light(emission.brightness(pixel), threshold)).collect();
 
                 let (origin, threshold) = (DVec2::ZERO, f64::from(threshold));
                 screen.clear([0.0; 3]);
@@ -69,7 +72,8 @@ fn search_mask_and_composite_take_the_same_pixels_for_light() {
                 let mut picture = pixels.clone();
                 live.picture.composite(frame, &mut picture, &settings).unwrap();
                 let any = light.iter().any(|&light| light);
-                let options = FindOptions { threshold: Some(threshold), firefly_limit: 0.0, ..FindOptions::default() };
+                let options =
+                    FindOptions { by, threshold: Some(threshold), firefly_limit: 0.0, ..FindOptions::default() };
                 assert_eq!(find(&pixels, &frame, emission, &options).regions > 0, any, "{what}");
                 for (index, (before, after)) in pixels.iter().zip(&picture).enumerate() {
                     assert_eq!(marked[index], light[index], "the mask, {what}: {before:?}");

@@ -40,6 +40,7 @@ mod split;
 mod steep;
 mod support;
 mod tiles;
+mod versions;
 mod view;
 mod viewer;
 mod viewer_fuzz;

@@ -278,7 +278,8 @@ fn the_mask_marks_what_the_search_takes_for_light() {
             (straight, 5000.0, &[10, 11]),
         ] {
             assert_eq!(marked(live, emission, limit), expected, "{emission:?} {limit}");
-            let options = FindOptions { threshold: Some(2.0), firefly_limit: limit, ..FindOptions::default() };
+            let options =
+                FindOptions { by: emission.by, threshold: Some(2.0), firefly_limit: limit, ..FindOptions::default() };
             let found = find(&photo, &frame, emission, &options);
             assert_eq!(found.fireflies, usize::from(limit > 0.0));
         }

@@ -12,14 +12,15 @@ use std::time::{Duration, Instant};
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, RawInput, Rect, Vec2, pos2, vec2};
 use glam::DVec2;
+use vglare::choices::Sources;
 use vglare::gpu::{Backend, Device, Screen};
-use vglare::look::Look;
+use vglare::look::{Look, LookLights};
 use vglare::photo::{self, Missing, Photo, ReadOptions, WriteOptions};
 use vglare::plan::Evaluator;
 use vglare::scene::Goal;
 use vglare::viewer::{App, Document, Shows};
 
-use crate::support::{Turn, turn};
+use crate::support::{Turn, lit, turn};
 
 const SIZE: [u32; 2] = [900, 500];
 /// The key, as winit tells of it.
@@ -41,7 +42,7 @@ impl Session {
         let turn = turn();
         // Pictures are written on EGL, beside the window's own context as under a real window.
         let device = Device::open(&[Backend::OsMesa]).unwrap();
-        let app = App::new(&device, Look::default(), Arc::new(|| {})).unwrap();
+        let app = App::new(&device, lit(), Arc::new(|| {})).unwrap();
         let screen = Screen::hidden(&device, SIZE).unwrap();
         Self { device, app, screen, time: 0.0, due: Duration::ZERO, copied: Vec::new(), _turn: turn }
     }
@@ -49,7 +50,7 @@ impl Session {
     /// With a synthetic photo open.
     fn with_photo() -> Self {
         let mut session = Self::new();
-        session.app.add(Document::new(Path::new("lamp.exr"), lamp(), Look::default()));
+        session.app.add(Document::new(Path::new("lamp.exr"), lamp(), lit()));
         session.settle();
         session
     }
@@ -302,11 +303,39 @@ fn a_drag_is_one_step() {
     assert!(!session.document().lights()[0].muted);
     let moved = session.document().lights()[0].position;
     session.shortcut(CTRL, Key::Z);
-    assert_eq!((&session.document().look, session.document().steps()), (&Look::default(), [false, true]));
+    assert_eq!((&session.document().look, session.document().steps()), (&lit(), [false, true]));
     session.shortcut(CTRL, Key::Y);
     assert_eq!(session.document().lights()[0].position, moved);
     session.shortcut(CTRL | Modifiers::SHIFT, Key::Z);
     assert!(session.document().lights()[0].muted);
+}
+
+#[test]
+fn every_pixel_is_a_source_until_lights_are_asked_for() {
+    let mut session = Session::new();
+    session.app.add(Document::new(Path::new("lamp.exr"), lamp(), Look::default()));
+    session.settle();
+    assert_eq!((session.app.problem(), session.document().lights().len()), (None, 0));
+    assert_eq!(session.document().found.lights.len(), 1, "they are known");
+    let beside = session.at(session.document().found.lights[0].position + DVec2::new(0.2, 0.0));
+    let lit = session.brightness(beside);
+    session.press(Key::B);
+    assert!(lit > session.brightness(beside) + 10, "the lamp's pixels shine");
+    session.press(Key::B);
+    // A threshold is one of all pixels, and counts at once.
+    session.app.document_mut().unwrap().look.find.threshold = Some(1e6);
+    session.settle();
+    assert!(session.brightness(beside) + 10 < lit && session.app.problem().is_none());
+    session.shortcut(CTRL, Key::Z);
+    assert_eq!(session.brightness(beside), lit);
+    session.app.document_mut().unwrap().look.lights = LookLights::Found;
+    session.settle();
+    assert_eq!((session.app.problem(), session.document().lights().len()), (None, 1));
+    session.app.document_mut().unwrap().look.shine_by(Sources::Photo);
+    session.settle();
+    assert_eq!(session.document().look, Look::default());
+    session.shortcut(CTRL, Key::Z);
+    assert_eq!(session.document().look, crate::support::lit());
 }
 
 #[test]

@@ -7,13 +7,12 @@ use std::time::{Duration, Instant};
 
 use egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, TouchPhase, pos2, vec2};
 use vglare::gpu::{Backend, Device};
-use vglare::look::Look;
 use vglare::photo::Photo;
 use vglare::viewer::Document;
 use vglare::viewer::replay::{Player, Step};
 
 use crate::support::scenes::Chance;
-use crate::support::turn;
+use crate::support::{lit, turn};
 
 /// Frames of one seed, and what memory may grow by after the first seeds, in bytes.
 const FRAMES: usize = 100;
@@ -101,7 +100,7 @@ fn check(player: &mut Player, seed: u64) {
 /// One seed's frames; how many there were.
 fn play(player: &mut Player, seed: u64) -> usize {
     let mut chance = Chance::new(seed);
-    player.app().add(Document::new(Path::new("fuzz.exr"), photo(), Look::default()));
+    player.app().add(Document::new(Path::new("fuzz.exr"), photo(), lit()));
     for frame in 0..FRAMES {
         let events = (0..=chance.below(3)).map(|_| chance.event()).collect();
         player.frame(events).unwrap_or_else(|error| panic!("seed {seed}, frame {frame}: {error}"));
@@ -131,7 +130,7 @@ fn random_input_breaks_nothing_and_memory_does_not_grow() {
     let started = Instant::now();
     let _turn = turn();
     let device = Device::open(&Backend::ALL).unwrap();
-    let mut player = Player::new(&device, Look::default(), [720, 440]).unwrap();
+    let mut player = Player::new(&device, lit(), [720, 440]).unwrap();
     let (mut frames, mut seed, mut warm) = (0, 0, None);
     while seed <= WARM_SEEDS || asked.is_some_and(|seconds| started.elapsed() < Duration::from_secs(seconds)) {
         frames += play(&mut player, seed);

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use vglare::gpu::{Backend, Device};
-use vglare::look::{Look, Veil};
+use vglare::look::Veil;
 use vglare::photo::Photo;
 use vglare::psf::{Name, Parameters};
 use vglare::scene::VeilSection;
@@ -11,17 +11,17 @@ use vglare::viewer::model::State;
 use vglare::viewer::replay::{Place, Player, Step};
 use vglare::viewer::{Document, Status};
 
-use crate::support::turn;
+use crate::support::{lit, turn};
 
 /// A window on a lamp, with a folder in which it remembers things.
 fn opened(backend: Backend) -> (tempfile::TempDir, Player) {
     let folder = tempfile::tempdir().unwrap();
     let device = Device::open(&[backend]).unwrap();
-    let mut player = Player::new(&device, Look::default(), [900, 600]).unwrap();
+    let mut player = Player::new(&device, lit(), [900, 600]).unwrap();
     let pixel = |i: i32, j: i32| if (i - 40).pow(2) + (j - 20).pow(2) < 9 { [400.0; 4] } else { [0.02; 4] };
     let photo = Photo::new(120, 80, (0..80).flat_map(|j| (0..120).map(move |i| pixel(i, j))).collect());
     player.app().remember(State::in_folder(folder.path().join("state")));
-    player.app().add(Document::new(Path::new("lamp.exr"), photo, Look::default()));
+    player.app().add(Document::new(Path::new("lamp.exr"), photo, lit()));
     for panel in ["Plots", "Performance"] {
         let place = Place::Control(panel.into(), 0.5);
         player.step(&Step::Rest).unwrap();

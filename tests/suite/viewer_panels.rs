@@ -18,7 +18,7 @@ use vglare::reference;
 use vglare::scene::{Goal, VeilSection};
 use vglare::viewer::{App, Cut, Document, Plot, Told};
 
-use crate::support::{Turn, turn};
+use crate::support::{Turn, lit, turn};
 
 const SIZE: [u32; 2] = [1000, 1500];
 /// Set, the golden pictures are written instead of compared with.
@@ -37,10 +37,10 @@ impl Session {
     fn of_size(size: [u32; 2]) -> Self {
         let turn = turn();
         let device = Device::open(&Backend::ALL).unwrap();
-        let app = App::new(&device, Look::default(), Arc::new(|| {})).unwrap();
+        let app = App::new(&device, lit(), Arc::new(|| {})).unwrap();
         let screen = Screen::hidden(&device, size).unwrap();
         let mut session = Self { app, screen, time: 0.0, due: Duration::ZERO, _turn: turn };
-        session.app.add(Document::new(Path::new("lamp.exr"), lamp(), Look::default()));
+        session.app.add(Document::new(Path::new("lamp.exr"), lamp(), lit()));
         session.settle();
         session
     }
@@ -143,7 +143,7 @@ fn veiled() -> Look {
     let parameters = Parameters::new(Name::Cie);
     let projection = Some(Projection::Planar);
     let section = VeilSection { parameters, fov: None, projection, border: None, tolerance: None };
-    Look { veil: Some(Veil::new(&section, false).unwrap()), fov: Some(50.0), ..Look::default() }
+    Look { veil: Some(Veil::new(&section, false).unwrap()), fov: Some(50.0), ..lit() }
 }
 
 fn certified(app: &App) -> bool {

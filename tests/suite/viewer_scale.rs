@@ -3,19 +3,18 @@
 use std::path::Path;
 
 use vglare::gpu::{Backend, Device};
-use vglare::look::Look;
 use vglare::photo::Photo;
 use vglare::viewer::replay::{Place, Player, Step};
 use vglare::viewer::{Document, Status};
 
-use crate::support::turn;
+use crate::support::{lit, turn};
 
 fn opened(size: [u32; 2]) -> Player {
     let device = Device::open(&Backend::ALL).unwrap();
-    let mut player = Player::new(&device, Look::default(), size).unwrap();
+    let mut player = Player::new(&device, lit(), size).unwrap();
     let pixel = |i: i32, j: i32| if (i - 40).pow(2) + (j - 20).pow(2) < 9 { [400.0; 4] } else { [0.02; 4] };
     let photo = Photo::new(120, 80, (0..80).flat_map(|j| (0..120).map(move |i| pixel(i, j))).collect());
-    player.app().add(Document::new(Path::new("lamp.exr"), photo, Look::default()));
+    player.app().add(Document::new(Path::new("lamp.exr"), photo, lit()));
     player.step(&Step::Rest).unwrap();
     player
 }

@@ -29,18 +29,21 @@ fn pixels_of_negative_luminance_are_black() {
     let place = Workplace::new();
     place.write("in.exr", &noisy());
     place.write("blue.exr", &Photo { pixels: vec![[0.0, 0.0, 3.0, 1.0]; 96 * 54], ..noisy() });
-    let found = place.json(&["lights", "in.exr", "--json"]);
+    let found = place.json(&["lights", "in.exr", "--json", "--by", "luminance"]);
     let lights = found["lights"].as_array().unwrap();
     assert_eq!(lights.len(), 1, "{found}");
     let at = [0, 1].map(|axis| lights[0]["position"][axis].as_f64().unwrap());
     assert!((at[0] - 49.0 / 54.0).abs() < 1e-9 && (at[1] - 9.0 / 54.0).abs() < 1e-9, "{at:?}");
-    assert_eq!(place.json(&["lights", "blue.exr", "--json"])["lights"], json!([]));
+    assert_eq!(place.json(&["lights", "blue.exr", "--json", "--by", "luminance"])["lights"], json!([]));
     for photo in ["in.exr", "blue.exr"] {
-        place.vglare(&["plan", photo]).succeeded();
-        place.vglare(&["apply", photo, "-o", "out.exr", "--force", "--strength", "0"]).succeeded();
-        place.vglare(&["apply", photo, "-o", "out.exr", "--force", "--mix", "energy"]).succeeded();
+        for lights in [&["--sources", "lights"][..], &["--sources", "lights", "--by", "luminance"], &[]] {
+            place.vglare(&[&["plan", photo][..], lights].concat()).succeeded();
+            let apply = ["apply", photo, "-o", "out.exr", "--force"];
+            place.vglare(&[&apply[..], lights, &["--strength", "0"]].concat()).succeeded();
+            place.vglare(&[&apply[..], lights, &["--mix", "energy"]].concat()).succeeded();
+        }
     }
-    place.vglare(&["apply", "in.exr", "blue.exr", "-o", "shot/"]).succeeded();
+    place.vglare(&["apply", "in.exr", "blue.exr", "-o", "shot/", "--sources", "lights"]).succeeded();
 }
 
 #[test]
@@ -82,8 +85,9 @@ fn a_firefly_is_no_light_and_is_told_wherever_lights_are() {
     assert_eq!(clean["fireflies"], json!({ "count": 0, "first": null }));
     assert_eq!(found["fireflies"], json!({ "count": 1, "first": [10, 40] }));
     let words = ["firefly", "column 10, row 40", "--firefly-limit 0"];
-    let apply = ["apply", "in.exr", "-o", "out.exr", "--force", "--report", "report.json"];
-    for args in [&["lights", "in.exr"][..], &["plan", "in.exr"], &apply] {
+    let files = ["apply", "in.exr", "-o", "out.exr", "--force", "--report", "report.json"];
+    let apply = [&files[..], &["--sources", "lights"]].concat();
+    for args in [&["lights", "in.exr"][..], &["plan", "in.exr", "--sources", "lights"], &apply] {
         let said = place.vglare(args).succeeded().stdout();
         assert!(words.iter().all(|word| said.contains(word)), "{said}");
     }
@@ -91,8 +95,13 @@ fn a_firefly_is_no_light_and_is_told_wherever_lights_are() {
     let all = place.json(&["lights", "in.exr", "--json", "--firefly-limit", "0"]);
     assert_eq!(all["fireflies"]["count"], 0);
     assert!(all["threshold"].as_f64() > found["threshold"].as_f64(), "{all}");
-    // The same in a look.
-    place.text("look.toml", "[find]\nfirefly_limit = 0\n");
+    // The same in a look; in an old one there are none unless it says so.
+    let old = [&files[..], &["--scene", "old.toml"]].concat();
+    for (limit, told) in [("", false), ("firefly_limit = 1000\n", true)] {
+        place.text("old.toml", &format!("[find]\n{limit}"));
+        assert_eq!(place.vglare(&old).succeeded().stdout().contains("firefly"), told);
+    }
+    place.text("look.toml", "version = 2\n[find]\nfirefly_limit = 0\n");
     let said = place.vglare(&[&apply[..], &["--scene", "look.toml"]].concat()).succeeded().stdout();
     assert!(!said.contains("firefly"), "{said}");
 }
@@ -106,7 +115,9 @@ fn where_there_are_no_lights_it_says_why_and_what_to_do() {
         ("black.png", &["the photo is black", "--lights"][..]),
         ("flat.png", &["nothing stands out", "4 times the mean", "--threshold", "--lights"]),
     ] {
-        for args in [&["lights", photo][..], &["plan", photo], &["apply", photo, "-o", "out.exr", "--force"]] {
+        let sources = ["--sources", "lights"];
+        let apply = [&["apply", photo, "-o", "out.exr", "--force"][..], &sources].concat();
+        for args in [&["lights", photo][..], &["plan", photo, sources[0], sources[1]], &apply] {
             let said = place.vglare(args).succeeded().stdout();
             assert!(words.iter().all(|word| said.contains(word)), "{args:?}: {said}");
         }
@@ -120,9 +131,9 @@ fn lights_of_a_file_are_added_to_those_found() {
     let place = Workplace::new();
     place.write("in.exr", &night());
     place.text("more.toml", "[[light]]\nposition = [0.1, 0.2]\nflux = [3, 2, 1]\n");
-    place.text("adds.toml", "[find]\nadd = true\n[[light]]\nposition = [0.1, 0.2]\nflux = [3, 2, 1]\n");
+    place.text("adds.toml", "version = 2\n[look]\nsources = \"lights\"\nunit = \"short-side\"\n[find]\nadd = true\n[[light]]\nposition = [0.1, 0.2]\nflux = [3, 2, 1]\n");
     let lights = |more: &[&str]| {
-        let args = ["apply", "in.exr", "-o", "out.exr", "--force", "--report", "report.json"];
+        let args = ["apply", "in.exr", "-o", "out.exr", "--force", "--report", "report.json", "--sources", "lights"];
         let said = place.vglare(&[&args[..], more].concat()).succeeded().stdout();
         (place.read_json("report.json")["scene"]["lights"].as_array().unwrap().clone(), said)
     };
@@ -143,7 +154,7 @@ fn glare_that_is_out_of_all_proportion_is_warned_of() {
     let place = Workplace::new();
     place.photo("in.exr");
     let apply = |more: &[&str]| {
-        let args = ["apply", "in.exr", "--force", "--report", "report.json"];
+        let args = ["apply", "in.exr", "--force", "--report", "report.json", "--sources", "lights"];
         place.vglare(&[&args[..], more].concat())
     };
     let said = apply(&["-o", "out.exr", "--strength", "1e30"]).succeeded().stderr();
@@ -164,11 +175,12 @@ fn glare_that_is_out_of_all_proportion_is_warned_of() {
 fn refusals_name_what_can_be_had() {
     let place = Workplace::new();
     place.photo("in.exr");
-    let said = place.vglare(&["plan", "in.exr", "--tolerance", "1e-9"]).failed(3, &["--allow-floor", "--tolerance "]);
+    let lights = ["plan", "in.exr", "--sources", "lights", "--tolerance"];
+    let said = place.vglare(&[&lights[..], &["1e-9"]].concat()).failed(3, &["--allow-floor", "--tolerance "]);
     let said = said.stderr();
     let (_, named) = said.split_once("ask for --tolerance ").expect("a tolerance");
     let named = named.split(',').next().unwrap();
-    place.vglare(&["plan", "in.exr", "--tolerance", named]).succeeded();
+    place.vglare(&[&lights[..], &[named]].concat()).succeeded();
     place.vglare(&["presets", "vintage"]).failed(2, &["did you mean vintage-uncoated?", "classic-prime"]);
     place.vglare(&["plan", "in.exr", "--preset", "annamorphic"]).failed(2, &["did you mean anamorphic?"]);
     place.text("look.toml", "preset = \"zom\"\n");

@@ -40,11 +40,11 @@ fn a_look_file_needs_no_options() {
     place.photo("in.exr");
     place.text(
         "look.toml",
-        "preset = \"zoom\"\naxis = [-0.2, 0.1]\nperiod = [6, 5]\ndegree = [24, 20]\n[look]\nstrength = 1.5\n\
+        "version = 2\npreset = \"v1/zoom\"\naxis = [-0.2, 0.1]\nperiod = [6, 5]\ndegree = [24, 20]\n[look]\nstrength = 1.5\n\
          size = 0.8\ntint = [1, 0.9, 0.7]\nnormalize = \"minmax\"\n[find]\nthreshold = 50\nmerge = 0\nmax_lights = 1\n\
          [accuracy]\ntolerance = 0.01\nevaluator = \"series\"\n",
     );
-    let all = "--preset zoom --axis -0.2,0.1 --period 6,5 --degree 24,20 --strength 1.5 --size 0.8 --tint 1,0.9,0.7 \
+    let all = "--preset v1/zoom --axis -0.2,0.1 --period 6,5 --degree 24,20 --strength 1.5 --size 0.8 --tint 1,0.9,0.7 \
                --normalize minmax --threshold 50 --merge 0 --max-lights 1 --tolerance 0.01 --evaluator series";
     let options: Vec<&str> = all.split_whitespace().collect();
     let from_file = place.applied(&["--scene", "look.toml", "--report", "report.json"]);
@@ -60,7 +60,7 @@ fn a_look_file_needs_no_options() {
         (&json!(1.5), &json!(0.8), &json!([1.0, 0.9, 0.7]))
     );
     assert_eq!((&report["normalize"], &report["mix"]), (&json!("minmax"), &json!("add")));
-    assert_eq!((&report["scene"]["axis"], &report["scene"]["lens"]), (&json!([-0.2, 0.1]), &json!("zoom")));
+    assert_eq!((&report["scene"]["axis"], &report["scene"]["lens"]), (&json!([-0.2, 0.1]), &json!("v1/zoom")));
     assert_eq!((&report["scene"]["threshold"], &report["error"]["asked"]), (&json!(50.0), &json!(0.01)));
 }
 
@@ -116,8 +116,9 @@ fn muted_lights_make_no_ghosts() {
     place.text("both.toml", &format!("{SCENE}muted = true\n"));
     place.text("one.toml", SCENE.rsplit_once("[[light]]").unwrap().0);
     let muted = place.applied(&["--scene", "both.toml", "--report", "report.json"]);
-    assert!(muted == place.applied(&["--lights", "one.toml"]));
-    assert!(muted == place.applied(&["--lights", "both.toml"]));
+    // A file without a version has the lens of then.
+    assert!(muted == place.applied(&["--lights", "one.toml", "--preset", "v1/classic-prime"]));
+    assert!(muted == place.applied(&["--lights", "both.toml", "--preset", "v1/classic-prime"]));
     let report = place.read_json("report.json");
     assert_eq!(
         (&report["scene"]["lights"][0]["muted"], &report["scene"]["lights"][1]["muted"]),
@@ -153,7 +154,7 @@ fn plans_follow_the_look_too() {
     );
     let plan = place.json(&["plan", "in.exr", "--scene", "look.toml", "--json"]);
     assert_eq!((&plan["lights"], &plan["plan"]["tolerance"]), (&json!(1), &json!(0.1)));
-    let full = "plan in.exr --preset zoom --tolerance 0.1 --max-lights 1 --evaluator grid --json";
+    let full = "plan in.exr --preset v1/zoom --tolerance 0.1 --max-lights 1 --evaluator grid --json";
     let again = place.json(&full.split(' ').collect::<Vec<_>>());
     assert_eq!(plan["ghosts"], again["ghosts"]);
     assert_ne!(plan["plan"]["period"], again["plan"]["period"], "a tenth of the size has a smaller reach");

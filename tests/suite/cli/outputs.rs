@@ -47,8 +47,12 @@ fn one_bad_pixel_harms_one_pixel() {
         let mut photo = night();
         photo.pixels[30 * 96 + 40][1] = value;
         place.write("bad.exr", &photo);
-        place.vglare(&["apply", "good.exr", "-o", "good-out.exr", "--force"]).succeeded();
-        let ran = place.vglare(&["apply", "bad.exr", "-o", "bad-out.exr", "--force"]).succeeded();
+        let apply = |name: &str, output: &str| {
+            // A pixel that is no source any more would be missing in the glare.
+            place.vglare(&["apply", name, "-o", output, "--force", "--sources", "lights"]).succeeded()
+        };
+        apply("good.exr", "good-out.exr");
+        let ran = apply("bad.exr", "bad-out.exr");
         assert!(ran.stdout().contains("column 40, row 30"), "{name} is told: {}", ran.stdout());
         let (good, bad) = (bits(&place.path("good-out.exr")), bits(&place.path("bad-out.exr")));
         let changed: Vec<_> = (0..good.len()).filter(|&k| good[k] != bad[k]).collect();
@@ -60,7 +64,15 @@ fn one_bad_pixel_harms_one_pixel() {
 fn the_report_says_what_was_done() {
     let place = Workplace::new();
     place.photo("in.exr");
-    place.vglare(&["apply", "in.exr", "-o", "out.exr", "--report", "report.json", "--glare", "glare.exr"]).succeeded();
+    let outputs = ["apply", "in.exr", "-o", "out.exr", "--report", "report.json", "--glare", "glare.exr"];
+    let said = place.vglare(&[&outputs[..], &["--max-lights", "1", "--force"]].concat()).succeeded().stdout();
+    let report = place.read_json("report.json");
+    assert!(said.contains("1 fainter one joined its nearest, "), "{said}");
+    let count = |name: &str| report["scene"][name].as_u64();
+    assert_eq!((count("lights_joined"), count("lights_dropped")), (Some(1), Some(0)));
+    let share = report["scene"]["joined_share"].as_f64().expect("a share");
+    assert!((0.05..0.2).contains(&share) && report["scene"]["dropped_share"] == 0.0, "{share}");
+    place.vglare(&[&outputs[..], &["--sources", "lights", "--force"]].concat()).succeeded();
     let text = std::fs::read_to_string(place.path("report.json")).expect("a report");
     let report: Value = serde_json::from_str(&text).expect("JSON");
     assert_eq!(report["input"]["picture"], serde_json::json!([96, 64]));
@@ -104,7 +116,9 @@ fn energy_is_taken_from_the_lights() {
     let place = Workplace::new();
     let photo = night();
     place.write("in.exr", &photo);
-    place.vglare(&["apply", "in.exr", "-o", "out.exr", "--mix", "energy", "--threshold", "10"]).succeeded();
+    place
+        .vglare(&["apply", "in.exr", "-o", "out.exr", "--mix", "energy", "--threshold", "10", "--sources", "lights"])
+        .succeeded();
     let out = photo::read(&place.path("out.exr")).unwrap();
     let at = 12 * 96 + 70;
     assert!(out.pixels[at][0] < photo.pixels[at][0], "the lamp is weaker by what it scatters");
@@ -131,7 +145,7 @@ fn found_lights_can_be_edited_and_used_again() {
     place.photo("in.exr");
     let listed = place.vglare(&["lights", "in.exr", "--json"]).succeeded().stdout();
     place.text("lights.json", &listed);
-    place.vglare(&["apply", "in.exr", "-o", "found.exr"]).succeeded();
+    place.vglare(&["apply", "in.exr", "-o", "found.exr", "--sources", "lights"]).succeeded();
     place.vglare(&["apply", "in.exr", "-o", "listed.exr", "--lights", "lights.json"]).succeeded();
     assert!(bits(&place.path("found.exr")) == bits(&place.path("listed.exr")));
 }

@@ -13,7 +13,7 @@ fn number(value: &Value, path: &str) -> f64 {
 fn a_plan_is_told_line_by_line_and_nothing_is_written() {
     let place = Workplace::new();
     place.photo("in.exr");
-    let text = place.vglare(&["plan", "in.exr", "--size", "1920x1280"]).succeeded().stdout();
+    let text = place.vglare(&["plan", "in.exr", "--size", "1920x1280", "--sources", "lights"]).succeeded().stdout();
     for word in [
         "1920 x 1280",
         "2 lights through classic-prime",
@@ -44,9 +44,12 @@ fn a_plan_is_told_line_by_line_and_nothing_is_written() {
 fn what_plan_tells_is_what_apply_does() {
     let place = Workplace::new();
     place.photo("in.exr");
-    for options in
-        [&["--tolerance", "1e-4"][..], &["--budget", "4"], &["--evaluator", "rows", "--preset", "anamorphic"]]
-    {
+    for options in [
+        &["--tolerance", "1e-4"][..],
+        &["--budget", "4"],
+        &["--evaluator", "rows", "--preset", "anamorphic"],
+        &["--max-lights", "9"],
+    ] {
         let told = place.json(&[&["plan", "in.exr", "--json"], options].concat());
         let apply = ["apply", "in.exr", "-o", "out.exr", "--report", "report.json", "--force"];
         place.vglare(&[&apply, options].concat()).succeeded();
@@ -62,6 +65,7 @@ fn what_plan_tells_is_what_apply_does() {
     }
     // In words, too.
     let by_grid = ["--evaluator", "grid"];
+    let by_grid = [&by_grid[..], &["--sources", "lights"]].concat();
     let verbose = place
         .vglare(&[&["apply", "in.exr", "-o", "out.exr", "--force", "-v"][..], &by_grid].concat())
         .succeeded()
@@ -123,12 +127,13 @@ fn a_budget_buys_accuracy_and_one_that_is_too_small_names_the_least() {
     let place = Workplace::new();
     place.photo("in.exr");
     let cost = |tolerance: f64| {
-        number(&place.json(&["plan", "in.exr", "--json", "--tolerance", &tolerance.to_string()]), "/predicted_ms")
+        let plan = ["plan", "in.exr", "--sources", "lights", "--json", "--tolerance", &tolerance.to_string()];
+        number(&place.json(&plan), "/predicted_ms")
     };
     let (least, most) = (cost(LOOSEST), cost(1e-4));
     assert!(least < most);
     let budget = 0.5 * (least + most);
-    let apply = ["apply", "in.exr", "-o", "out.exr", "--report", "report.json", "--budget"];
+    let apply = ["apply", "in.exr", "-o", "out.exr", "--sources", "lights", "--report", "report.json", "--budget"];
     let ran = place.vglare(&[&apply[..], &[&budget.to_string()]].concat()).succeeded();
     assert!(ran.stdout().contains("bought a tolerance of"), "{}", ran.stdout());
     let report = place.read_json("report.json");
@@ -140,7 +145,9 @@ fn a_budget_buys_accuracy_and_one_that_is_too_small_names_the_least() {
     assert!(number(&report, "/error/measured") <= number(&report, "/error/predicted"), "{report}");
 
     let small = (0.9 * least).to_string();
+    let lights = ["--sources", "lights"];
     for command in [&["plan", "in.exr"][..], &["apply", "in.exr", "-o", "none.exr"]] {
+        let command = &[command, &lights].concat()[..];
         place.vglare(&[command, &["--budget", &small]].concat()).failed(3, &["budget", &format!("{least:.3} ms")]);
         place.vglare(&[command, &["--budget", "5", "--tolerance", "1e-3"]].concat()).failed(2, &["--tolerance"]);
         place.vglare(&[command, &["--budget", "0"]].concat()).failed(2, &["milliseconds"]);
@@ -152,8 +159,21 @@ fn a_budget_buys_accuracy_and_one_that_is_too_small_names_the_least() {
 fn the_floor_is_settled_for_where_that_is_allowed() {
     let place = Workplace::new();
     place.photo("in.exr");
-    place.vglare(&["plan", "in.exr", "--tolerance", "1e-12"]).failed(3, &["1.0e-12", "below what can be had"]);
-    let apply = ["apply", "in.exr", "-o", "out.exr", "--report", "report.json", "--allow-floor", "--tolerance"];
+    place
+        .vglare(&["plan", "in.exr", "--sources", "lights", "--tolerance", "1e-12"])
+        .failed(3, &["1.0e-12", "below what can be had"]);
+    let apply = [
+        "apply",
+        "in.exr",
+        "-o",
+        "out.exr",
+        "--report",
+        "report.json",
+        "--sources",
+        "lights",
+        "--allow-floor",
+        "--tolerance",
+    ];
     let ran = place.vglare(&[&apply[..], &["1e-12"]].concat()).succeeded();
     assert!(ran.stdout().contains("note ") && ran.stdout().contains("instead of 1.0e-12"), "{}", ran.stdout());
     let report = place.read_json("report.json");

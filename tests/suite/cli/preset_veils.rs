@@ -48,9 +48,9 @@ fn a_lens_has_its_veil_unless_somebody_says_otherwise() {
         let ghosts = report["scene"]["ghosts"].as_u64().unwrap();
         (report["veil"]["psf"].as_str().map(str::to_owned), ghosts > 0, std::fs::read(place.path("out.exr")).unwrap())
     };
-    place.text("eye.toml", "preset = \"eye\"\n");
-    place.text("ghosts.toml", "preset = \"eye\"\n[veil]\npsf = \"none\"\n");
-    place.text("own.toml", "preset = \"eye\"\n[veil]\npsf = \"gaussian\"\nwidth = 0.1\nscatter = 0.1\n");
+    place.text("eye.toml", "version = 2\npreset = \"eye\"\n");
+    place.text("ghosts.toml", "version = 2\npreset = \"eye\"\n[veil]\npsf = \"none\"\n");
+    place.text("own.toml", "version = 2\npreset = \"eye\"\n[veil]\npsf = \"gaussian\"\nwidth = 0.1\nscatter = 0.1\n");
     let told = |options: &str| {
         let (veil, ghosts, _) = run(options);
         (veil.unwrap_or_default(), ghosts)
@@ -61,12 +61,14 @@ fn a_lens_has_its_veil_unless_somebody_says_otherwise() {
         ("--preset eye --veil stiles-holladay --fov 40 --projection planar", "stiles-holladay", false),
         ("--preset classic-veil", "camera", true),
         ("--preset haze-filter", "mixture", false),
-        ("--preset classic-prime", "", true),
+        ("--preset v1/classic-prime", "", true),
+        ("--preset v1/eye", "", true),
+        ("--preset v1/classic-veil", "camera", true),
         ("--scene eye.toml", "mixture", false),
         ("--scene ghosts.toml", "", true),
         ("--scene own.toml", "gaussian", false),
         ("--scene own.toml --preset classic-veil", "gaussian", true),
-        ("--scene eye.toml --preset zoom", "", true),
+        ("--scene eye.toml --preset v1/zoom", "", true),
         ("--scene eye.toml --lens none --veil none", "", false),
     ] {
         assert_eq!(told(options), (veil.to_owned(), ghosts), "{options}");

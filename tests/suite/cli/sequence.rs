@@ -281,12 +281,14 @@ fn strict_fails_where_any_photo_is_above_the_tolerance() {
 #[test]
 fn each_photo_has_a_line_where_more_is_to_be_said_and_none_where_nothing_is() {
     let (place, names) = place(3);
-    let said = place.vglare(&apply(&names, &["-o", "out/", "-v"])).succeeded().stdout();
+    let said = place.vglare(&apply(&names, &["-o", "out/", "-v", "--sources", "lights"])).succeeded().stdout();
     let lines: Vec<_> = said.lines().filter(|line| line.starts_with("photo ")).collect();
     assert_eq!(lines.len(), 3, "{said}");
     for (line, name) in lines.iter().zip(&names) {
         assert!(line.contains(&format!("out/{name}")) && line.contains("2 lights") && line.contains("error"), "{line}");
     }
+    let said = place.vglare(&apply(&names, &["-o", "out/", "-v", "--force"])).succeeded().stdout();
+    assert!(said.lines().any(|line| line.starts_with("photo ") && line.contains("ghosts of each pixel")), "{said}");
     let said = place.vglare(&apply(&names, &["-o", "out/", "--force"])).succeeded().stdout();
     assert!(said.contains("wrote    3 of 3 pictures into out in"), "{said}");
     let ran = place.vglare(&apply(&names, &["-o", "out/", "--force", "-q"])).succeeded();

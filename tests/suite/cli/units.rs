@@ -154,7 +154,8 @@ fn lights_say_their_unit_and_are_taken_in_no_other() {
     let line =
         ["apply", "in.exr", "--glare", "glare.exr", "--force", "--report", "report.json", "--lights", "lights.json"];
     place.text("scene.toml", "[look]\nstrength = 1\n");
-    for other in [["--unit", "height"], ["--scene", "scene.toml"]] {
+    place.text("new.toml", "version = 2\n[look]\nunit = \"height\"\n");
+    for other in [["--unit", "height"], ["--scene", "scene.toml"], ["--scene", "new.toml"]] {
         place.vglare(&[&line[..], &other].concat()).failed(1, &["lights.json", "short-side", "height"]);
     }
     let unit = |options: &[&str]| {

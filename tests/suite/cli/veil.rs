@@ -109,7 +109,7 @@ fn ghosts_and_veil_add_up_and_files_say_what_options_do() {
     }
     place.text(
         "look.toml",
-        "[veil]\npsf = \"spencer\"\nluminance = \"scotopic\"\nfov = 40\nscatter = 0.2\n[look]\nstrength = 1.0\n",
+        "version = 2\n[veil]\npsf = \"spencer\"\nluminance = \"scotopic\"\nfov = 40\nscatter = 0.2\n[look]\nstrength = 1.0\n",
     );
     assert_eq!(glare("filed.exr", &["--scene", "look.toml"]), both);
     assert_eq!(glare("none.exr", &["--scene", "look.toml", "--veil", "none"]), ghosts);

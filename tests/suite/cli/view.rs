@@ -6,7 +6,9 @@ use super::*;
 fn play(workplace: &Workplace, script: &str) -> Ran {
     workplace.photo("night.exr");
     workplace.text("script.json", script);
-    workplace.vglare(&["view", "night.exr", "--script", "script.json", "--script-output", "out"])
+    workplace.text("lights.toml", "version = 2\n[look]\nsources = \"lights\"\n");
+    let view = ["view", "night.exr", "--scene", "lights.toml"];
+    workplace.vglare(&[&view[..], &["--script", "script.json", "--script-output", "out"]].concat())
 }
 
 #[test]

@@ -25,6 +25,11 @@ fn a_file_and_an_option_take_the_whole_photo_and_the_report_says_so() {
     let (by_option, report, said) = apply(&["--lens", "lens.toml", "--sources", "photo"]);
     let (by_file, ..) = apply(&["--scene", "look.toml"]);
     assert!(by_option == by_file);
+    // Unless somebody says otherwise, it is so.
+    let (by_default, ..) = apply(&["--lens", "lens.toml"]);
+    place.text("new.toml", &format!("version = 2\n{LENS}"));
+    let (by_new_file, ..) = apply(&["--scene", "new.toml"]);
+    assert!(by_option == by_default && by_option == by_new_file);
     assert_eq!(report["scene"]["sources"], json!("photo"));
     assert_eq!(report["scene"]["ghosts"], json!(PIXELS));
     let (predicted, measured) = (report["error"]["predicted"].as_f64(), report["error"]["measured"].as_f64());
@@ -42,8 +47,8 @@ fn a_file_and_an_option_take_the_whole_photo_and_the_report_says_so() {
         "photo",
         "--lens",
         "lens.toml",
-        "--max-lights",
-        "3",
+        "--merge",
+        "0.1",
     ]);
     assert!(warned.succeeded().stderr().contains("change nothing where every pixel is a source"));
 }
@@ -60,7 +65,8 @@ fn what_contradicts_the_whole_photo_is_refused() {
         place.vglare(&args).failed(code, &[expected]);
         assert!(!place.path("out.exr").exists());
     };
-    refused(2, &["--lights", "lights.toml"], "cannot be used with");
+    refused(2, &["--lights", "lights.toml"], "--sources photo cannot be used with --lights");
+    refused(2, &["--max-lights", "7"], "--sources photo cannot be used with --max-lights");
     refused(1, &["--evaluator", "direct"], "give --sources lights, or another evaluator");
     let studied = place.vglare(&["tradeoff", "in.exr", "-o", "page", "--sources", "photo"]);
     studied.failed(2, &["every pixel is a source: give --sources lights"]);

@@ -97,3 +97,8 @@ pub fn bits(pixels: &[[f32; 4]]) -> Vec<[u32; 4]> {
 pub fn rgb(pixels: &[[f32; 4]]) -> Vec<[f64; 3]> {
     pixels.iter().map(|&[r, g, b, _]| [r, g, b].map(f64::from)).collect()
 }
+
+/// The look by default, but of the lights that are found in the photo.
+pub fn lit() -> vglare::look::Look {
+    vglare::look::Look { lights: vglare::look::LookLights::Found, ..vglare::look::Look::default() }
+}

@@ -64,7 +64,7 @@ fn the_window_writes_what_apply_writes_of_the_saved_look() {
 fn the_window_writes_what_apply_writes_in_another_unit() {
     let (folder, mut session) = in_a_folder();
     let path = |name: &str| folder.path().join(name);
-    let look = |unit, fov| Look { unit, fov, ..Look::default() };
+    let look = |unit, fov| Look { unit, fov, ..lit() };
     for (unit, fov) in [(LengthUnit::Diagonal, None), (LengthUnit::Degrees, Some(60.0)), (LengthUnit::ShortSide, None)]
     {
         // A degree is small, and so is a ghost of a fraction of one.
@@ -128,7 +128,7 @@ fn the_menu_saves_the_glare() {
     let mut command = Command::new(env!("CARGO_BIN_EXE_vglare"));
     let path = |name: &str| folder.path().join(name);
     command.args(["apply", "--quiet"]).arg(path("lamp.exr")).arg("-o").arg(path("out.exr"));
-    let done = command.arg("--glare").arg(path("glare.exr")).output().unwrap();
+    let done = command.args(["--sources", "lights", "--glare"]).arg(path("glare.exr")).output().unwrap();
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     let [window, apply] = ["lamp-glare-alone.exr", "glare.exr"].map(|name| std::fs::read(path(name)).unwrap());
     assert!(window == apply, "the files differ");
@@ -206,7 +206,7 @@ fn two_presses_in_one_frame_undo_two_steps() {
     }
     let key = |pressed| Event::Key { key: Key::Z, physical_key: None, pressed, repeat: false, modifiers: CTRL };
     session.frame(vec![key(true), key(false), key(true), key(false)]);
-    assert_eq!((&session.document().look, session.document().steps()), (&Look::default(), [false, true]));
+    assert_eq!((&session.document().look, session.document().steps()), (&lit(), [false, true]));
 }
 
 #[test]
@@ -282,7 +282,7 @@ fn a_bad_look_is_told_of_and_the_old_one_stays() {
     assert_eq!(session.document().look, looked);
     assert!(session.app.notices().len() == 1 && session.app.notices()[0].contains("bad.toml: line 2"));
     session.shortcut(CTRL, Key::Z);
-    assert_eq!(session.document().look, Look::default());
+    assert_eq!(session.document().look, lit());
 }
 
 #[test]

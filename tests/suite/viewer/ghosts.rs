@@ -61,7 +61,7 @@ fn a_ghost_is_placed_dragged_undone_and_saved() {
     for _ in 0..3 {
         session.shortcut(CTRL, Key::Z);
     }
-    assert_eq!((&session.document().look, session.document().steps()), (&Look::default(), [false, true]));
+    assert_eq!((&session.document().look, session.document().steps()), (&lit(), [false, true]));
 }
 
 #[test]

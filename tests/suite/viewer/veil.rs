@@ -30,7 +30,7 @@ fn gaussian(width: f64) -> Parameters {
 /// A look with a veil by these parameters, and a picture of 50°.
 fn with_veil(parameters: Parameters) -> Look {
     let veil = Veil::new(&section(parameters), false).unwrap();
-    Look { veil: Some(veil), fov: Some(50.0), ..Look::default() }
+    Look { veil: Some(veil), fov: Some(50.0), ..lit() }
 }
 
 impl Session {
@@ -102,7 +102,7 @@ fn the_window_shows_the_veil_that_apply_lays_over_the_photo() {
     let (folder, mut session) = in_a_folder();
     let path = |name: &str| folder.path().join(name);
     let plain = Look { veil: None, ..with_veil(cie(25.0)) };
-    let eye = Look::default().through(LookLens::preset("eye").unwrap(), false).unwrap();
+    let eye = lit().through(LookLens::preset("eye").unwrap(), false).unwrap();
     let mut added = with_veil(Parameters::new(Name::Camera));
     added.veil = added.veil.map(|veil| veil.adding(true));
     let tinted = Parameters {
@@ -242,13 +242,13 @@ fn a_preset_brings_its_veil_and_undo_takes_both_away() {
         session.rest();
         assert_eq!(session.document().look.veil.is_some(), has_veil);
     }
-    assert_eq!(session.document().look, Look::default());
+    assert_eq!(session.document().look, lit());
 }
 
 #[test]
 fn a_lens_by_hand_keeps_the_veil() {
     let mut session = Session::with_photo();
-    session.take(Look::default().through(LookLens::preset("classic-veil").unwrap(), false).unwrap());
+    session.take(lit().through(LookLens::preset("classic-veil").unwrap(), false).unwrap());
     let veil = session.document().look.veil.clone();
     let bell = Bell::Gaussian;
     let row = LensGhost { bell, along: -1.0, size: DVec2::splat(0.1), tint: [1.0; 3], share: 1e-3 };

@@ -1,6 +1,6 @@
 //! What every control of the panels has: what it says of itself, a way back, and keys.
 
-use vglare::choices::{Border, LengthUnit, Mix, Normalize};
+use vglare::choices::{Beyond, Border, LengthUnit, LightBy, Mix, Normalize};
 use vglare::look::Accuracy;
 use vglare::photo::ToneMap;
 use vglare::psf::Luminance;
@@ -47,7 +47,15 @@ fn changed(session: &mut Session) -> (Look, Viewing) {
     let (before, viewing) = (document.look.clone(), document.viewing);
     let look = &mut document.look;
     (look.strength, look.size, look.tint, look.axis) = (0.5, 2.0, [0.5, 0.25, 2.0], DVec2::new(0.5, -0.5));
-    look.find = FindOptions { threshold: Some(3.0), merge: 0.5, max_lights: 3, firefly_limit: 100.0, knee: 0.0 };
+    look.find = FindOptions {
+        by: LightBy::Luminance,
+        threshold: Some(3.0),
+        merge: 0.5,
+        max_lights: 3,
+        beyond: Beyond::Drop,
+        firefly_limit: 100.0,
+        knee: 0.0,
+    };
     (look.mix, look.normalize) = (Mix::Energy, Normalize::Clamp);
     look.accuracy = Accuracy {
         goal: Goal::Tolerance(1e-2),
@@ -273,7 +281,7 @@ fn a_name_goes_back_by_the_keyboard_too() {
 /// A look with a veil of these parameters, of a picture of 50°.
 fn veiled_by(parameters: Parameters) -> Look {
     let section = VeilSection { parameters, fov: None, projection: None, border: None, tolerance: None };
-    Look { veil: Some(Veil::new(&section, false).unwrap()), fov: Some(50.0), ..Look::default() }
+    Look { veil: Some(Veil::new(&section, false).unwrap()), fov: Some(50.0), ..lit() }
 }
 
 #[test]
