@@ -306,8 +306,8 @@ fn the_command_line_is_copied_where_there_is_one() {
     session.shortcut(CTRL | Modifiers::SHIFT, Key::C);
     let words = shlex::split(&session.copied[0]).unwrap();
     let path = |name: &str| folder.path().join(name).display().to_string();
-    let expected = ["vglare", "apply", &path("lamp.exr"), "-o", &path("lamp-glare.exr"), "--strength", "0.5"];
-    assert_eq!(words, expected);
+    let files = ["vglare", "apply", &path("lamp.exr"), "-o", &path("lamp-glare.exr")];
+    assert_eq!(words, [&files[..], &["--sources", "lights", "--strength", "0.5"]].concat());
     // A light by hand needs a file.
     session.app.document_mut().unwrap().lights_mut().clear();
     session.shortcut(CTRL | Modifiers::SHIFT, Key::C);
