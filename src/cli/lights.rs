@@ -191,8 +191,7 @@ mod tests {
         pixels[2 * 40 + 30] = [900.1, 800.2, 700.3, 1.0];
         pixels[12 * 40 + 5] = [50.0, 30.0, 0.0, 1.0];
         pixels[18 * 40 + 5] = [500.0, 30.0, 0.0, 1.0];
-        let options =
-            FindOptions { by: LightBy::Luminance, max_lights: 2, firefly_limit: 0.0, ..FindOptions::default() };
+        let options = FindOptions { max_lights: 2, ..FindOptions::VERSION_1 };
         (find(&pixels, &frame, [0.2126, 0.7152, 0.0722], &options), frame)
     }
 
@@ -248,7 +247,7 @@ mod tests {
         assert!(text.contains("30.0") && text.contains("18.0"), "{text}");
         let summary: Vec<_> = text.lines().rev().take(2).collect();
         assert!(summary[1].contains("3 regions: 2 lights, 0 merged."), "{text}");
-        assert!(summary[0].starts_with("Beyond them: 1 fainter one joined its nearest, "), "{text}");
+        assert!(summary[0].starts_with("Beyond them: 1 fainter one left out, "), "{text}");
     }
 
     #[test]
