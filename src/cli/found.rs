@@ -10,7 +10,7 @@ pub fn none(found: &Found) -> String {
     let instead = "--sources photo takes every pixel, and --lights FILE and --scene FILE list lights by hand";
     let brightest = match found.by {
         LightBy::Luminance => "the photo's brightest luminance",
-        LightBy::Brightest => "its brightest pixel's brightest channel",
+        LightBy::Brightest => "the brightest channel of the photo's brightest pixel",
     };
     // A lamp of one colour has no more luminance than its colour has of white.
     let colours = match found.by {
@@ -20,7 +20,7 @@ pub fn none(found: &Found) -> String {
     match found.rule {
         _ if found.peak == 0.0 => format!("the photo is black; {instead}"),
         Rule::Given => {
-            format!("the threshold is {threshold} and {brightest} {peak}; a lower --threshold finds more{colours}")
+            format!("the threshold is {threshold}, and {brightest} is {peak}; a lower --threshold finds more{colours}")
         }
         // What is made for a display ends at its white.
         _ if found.peak <= 1.0 && found.threshold > 1.0 => format!(

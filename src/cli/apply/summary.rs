@@ -125,7 +125,7 @@ fn about_found(out: &mut dyn Write, found: &Found, look: &Look) -> io::Result<()
     if found.regions == 0 {
         writeln!(out, "lights   none, so no glare of the photo's own: {}", found::none(found))?;
     } else {
-        writeln!(out, "lights   {} at {} {:.4} and above", found.lights.len(), found.by, found.threshold)?;
+        writeln!(out, "lights   {} at a {} of {:.4} and above", found.lights.len(), found.by, found.threshold)?;
         found::beyond(found).iter().try_for_each(|beyond| writeln!(out, "         {beyond}"))?;
     }
     match found::fireflies(found, &look.find) {
