@@ -20,6 +20,7 @@ mod convert;
 mod exchange;
 mod field;
 mod graf;
+mod lattice;
 mod live;
 mod local;
 mod mask;

@@ -33,6 +33,9 @@
 #define bell_value bladed_disc
 #include "bells/bladed_disc.glsl"
 #undef bell_value
+#define bell_value iris
+#include "bells/iris.glsl"
+#undef bell_value
 
 // RUN(kind, function) for each of them that the program HAS, in the order of the registry. There is no function that chooses a
 // ghost's bell: Mesa's software renderer would compute all of them for each ghost. Nor is there a loop for a bell that no ghost
@@ -82,4 +85,9 @@
 #else
 #define RUN_8(RUN)
 #endif
-#define EACH_BELL(RUN) RUN_0(RUN) RUN_1(RUN) RUN_2(RUN) RUN_3(RUN) RUN_4(RUN) RUN_5(RUN) RUN_6(RUN) RUN_7(RUN) RUN_8(RUN)
+#ifdef HAS_9
+#define RUN_9(RUN) RUN(9, iris)
+#else
+#define RUN_9(RUN)
+#endif
+#define EACH_BELL(RUN) RUN_0(RUN) RUN_1(RUN) RUN_2(RUN) RUN_3(RUN) RUN_4(RUN) RUN_5(RUN) RUN_6(RUN) RUN_7(RUN) RUN_8(RUN) RUN_9(RUN)

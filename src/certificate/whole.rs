@@ -37,8 +37,7 @@ fn counts(images: &Images) -> [usize; 2] {
             products += 3.0 * pixels;
         } else {
             let [low, high] = images.centres(image);
-            let reached =
-                (2.0 * shape.ends() * image.ghost.size / (high - low).max(DVec2::splat(1e-9))).min(DVec2::ONE);
+            let reached = (2.0 * image.reached() / (high - low).max(DVec2::splat(1e-9))).min(DVec2::ONE);
             bells += pixels * reached.element_product();
         }
     }

@@ -38,6 +38,18 @@ pub(crate) struct LatticeTile<'a> {
     pub height: u32,
 }
 
+/// A tile of a lattice whose nodes have their values.
+pub(crate) struct SummedTile<'a> {
+    /// Columns and rows.
+    pub nodes: [u32; 2],
+    /// Row by row.
+    pub values: &'a [[f32; 4]],
+    /// Where the columns and the rows of the tile lie.
+    pub knots: [Knots; 2],
+    /// Rows of the tile.
+    pub height: u32,
+}
+
 /// The uniforms of `direct`, as its shaders have them.
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
@@ -166,16 +178,30 @@ impl Evaluators {
         let [columns, rows] = tile.node_phases.map(|phases| phases.len() as u32);
         let lattice = self.lattice.get(device, Texel::Rgba, columns, rows)?;
         runner.draw("lattice.frag", &[("EVALUATOR", "\"evaluators/rows.glsl\"")], lattice, 0)?;
+        self.strips_of(runner, [columns, rows], tile.knots, tile.height)
+    }
 
+    /// The same where the nodes have their values already.
+    pub fn grid_of(&mut self, runner: &Runner, tile: &SummedTile<'_>) -> Result<()> {
+        let [columns, rows] = tile.nodes;
+        let lattice = self.lattice.get(runner.device(), Texel::Rgba, columns, rows)?;
+        lattice.write(tile.values, columns as usize, columns, rows);
+        self.strips_of(runner, tile.nodes, tile.knots, tile.height)
+    }
+
+    /// The cubics of a tile's rows, of the lattice that is there.
+    fn strips_of(&mut self, runner: &Runner, [columns, rows]: [u32; 2], knots: [Knots; 2], height: u32) -> Result<()> {
+        let device = runner.device();
+        let lattice = self.lattice.get(device, Texel::Rgba, columns, rows)?;
         lattice.bind(LATTICE);
         // Three texels for each cell, of which there are three fewer than nodes.
         let cells = self.cells.get(device, Texel::Rgba, 3 * (columns - 3), rows)?;
         runner.draw("cells.frag", &[], cells, 0)?;
 
-        self.knots.store(&tile.knots)?;
+        self.knots.store(&knots)?;
         self.knots.bind_uniform(EVALUATOR);
         cells.bind(CELLS);
-        let strips = self.strips.get(device, Texel::Rgba, 3 * (columns - 3), tile.height)?;
+        let strips = self.strips.get(device, Texel::Rgba, 3 * (columns - 3), height)?;
         runner.draw("strips.frag", &[], strips, 0)?;
         strips.bind(STRIPS);
         Ok(())

@@ -29,6 +29,7 @@ const SOURCES: &[(&str, &str)] = &sources![
     "bells/cosine_squared.glsl",
     "bells/disc.glsl",
     "bells/gaussian.glsl",
+    "bells/iris.glsl",
     "bells/parabola.glsl",
     "bells/paraboloid.glsl",
     "bells/point.glsl",

@@ -26,6 +26,8 @@ const CHUNK: usize = 128;
 const MOST_WORK: f64 = 3e8;
 /// More modes than this are not kept track of: a series of so many takes seconds at any size of picture.
 const MOST_MODES: usize = 1 << 18;
+/// And where a photo's images have no other way.
+const MOST_OF_IMAGES: usize = 1 << 20;
 
 /// Whether so many ghosts could be looked at in a series of a few modes; a photo's images are not left to a device.
 pub(super) fn worth_a_try(groups: &[Group]) -> bool {
@@ -40,7 +42,8 @@ pub(super) fn worth_looking(groups: &[Group], counts: &[u32], period: DVec2, nee
     let few = modes.saturating_mul(apart.map(|group| group.members.len()).sum()) <= EFFORT;
     // A photo's images have no other way.
     let only = groups.iter().any(|group| matches!(group.transform, Transform::Photo(_)));
-    modes <= MOST_MODES && (only || (few || needed) && work(groups, counts, period) <= MOST_WORK)
+    let most = if only { MOST_OF_IMAGES } else { MOST_MODES };
+    modes <= most && (only || (few || needed) && work(groups, counts, period) <= MOST_WORK)
 }
 
 /// What a ghost takes for each mode, about, in nanoseconds.
@@ -61,7 +64,7 @@ pub(super) fn work(groups: &[Group], counts: &[u32], period: DVec2) -> f64 {
         let size = group.smallest / period;
         let bell = group.bell.shape();
         let tables = match bell.modes() {
-            Bells::Radial(_) => TRANSFORM * modes,
+            Bells::Radial(_) | Bells::Plane(_) => TRANSFORM * modes,
             // All ghosts of it have one size.
             Bells::Product(factor) if bell.tabulated() => {
                 factor.work(f64::from(n), size.x) + factor.work(f64::from(m), size.y)
@@ -295,6 +298,12 @@ impl<'a> View<'a> {
                     let size = group.smallest / self.period;
                     sums.add_times(&phases, &radial.means(self.counts, size));
                 }
+                Bells::Plane(plane) => {
+                    let mut phases = Sums::zero(modes);
+                    self.add(&mut phases, members, None, &mut axes);
+                    let size = group.smallest / self.period;
+                    sums.add_turned(&phases, &plane.parts(self.counts, size));
+                }
                 // Finding modes enough for it has failed before anyone looks at them.
                 Bells::None => {}
             }
@@ -396,6 +405,18 @@ impl Sums {
         }
     }
 
+    /// Adds the others, each mode through a bell that has these parts.
+    fn add_turned(&mut self, others: &Self, parts: &[[f64; 4]]) {
+        for ((mine, theirs), parts) in self.0.iter_mut().zip(&others.0).zip(parts) {
+            for colour in 0..3 {
+                let turned = turned([0, 3, 6, 9].map(|part| theirs[part + colour]), *parts);
+                for (part, value) in turned.into_iter().enumerate() {
+                    mine[3 * part + colour] += value;
+                }
+            }
+        }
+    }
+
     /// Adds the others, each mode times its factor.
     fn add_times(&mut self, others: &Self, factors: &[f64]) {
         for ((mine, theirs), factor) in self.0.iter_mut().zip(&others.0).zip(factors) {
@@ -404,6 +425,15 @@ impl Sums {
             }
         }
     }
+}
+
+/// What the products of real and imaginary parts along x and y, re·re, im·re, re·im and im·im, become in a bell that has these parts, as
+/// [`crate::series::Plane`] gives them: Z₊ and Z₋ each times the bell's own, (cc ∓ ss) − i(±cs + sc).
+pub(super) fn turned([re_re, im_re, re_im, im_im]: [f64; 4], [cc, ss, cs, sc]: [f64; 4]) -> [f64; 4] {
+    let times = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a * c - b * d, a * d + b * c];
+    let plus = times([re_re - im_im, im_re + re_im], [cc - ss, -(sc + cs)]);
+    let minus = times([re_re + im_im, im_re - re_im], [cc + ss, cs - sc]);
+    [plus[0] + minus[0], plus[1] + minus[1], plus[1] - minus[1], minus[0] - plus[0]].map(|part| 0.5 * part)
 }
 
 /// A, B, C and D of a mode for each colour, and (|Z₊| + |Z₋|) κ/2.

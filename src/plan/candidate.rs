@@ -87,6 +87,7 @@ impl Survey {
         let ready = bells.map(|bell| match bell.shape().modes() {
             Modes::Product(_) | Modes::None => 0.0,
             Modes::Radial(radial) => radial.preparation(),
+            Modes::Plane(plane) => plane.preparation(),
         });
         self.effort.spend(ready.sum())
     }

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 use glam::DVec2;
 
 use super::{Group, HIGHEST_DEGREE};
-use crate::series::{Bell, Factor, Modes, Radial};
+use crate::series::{Bell, Bounded, Factor, Modes};
 use crate::{Error, Result};
 
 /// What the coefficients of a group's bell are at most.
@@ -16,8 +16,10 @@ pub(super) enum Decay<'a> {
         factor: &'a dyn Factor,
         size: DVec2,
     },
-    Radial {
-        radial: &'a dyn Radial,
+    /// What is no product, by a bound of its transform.
+    Whole {
+        modes: Modes<'a>,
+        bounds: &'a dyn Bounded,
         size: DVec2,
     },
     /// There is no series.
@@ -60,7 +62,8 @@ impl<'a> Decay<'a> {
         let size = group.smallest / period;
         match group.bell.shape().modes() {
             Modes::Product(factor) => Self::Product { factor, size },
-            Modes::Radial(radial) => Self::Radial { radial, size },
+            modes @ Modes::Radial(radial) => Self::Whole { modes, bounds: radial, size },
+            modes @ Modes::Plane(plane) => Self::Whole { modes, bounds: plane, size },
             Modes::None => Self::None { bell: &group.bell },
         }
     }
@@ -71,7 +74,7 @@ impl<'a> Decay<'a> {
         match *self {
             // Once to find them, and once to bound what they leave out.
             Self::Product { factor, size } => 2.0 * (factor.work(n, size.x) + factor.work(m, size.y)) + 3000.0,
-            Self::Radial { radial, .. } => 40.0 * radial.work() + 10.0 * (n + m),
+            Self::Whole { bounds, .. } => 40.0 * bounds.work() + 10.0 * (n + m),
             Self::None { .. } => 0.0,
         }
     }
@@ -80,7 +83,7 @@ impl<'a> Decay<'a> {
     pub fn expected_work(&self, error: f64) -> f64 {
         match *self {
             Self::Product { factor, size } => self.work([factor.degree(error, size.x), factor.degree(error, size.y)]),
-            Self::Radial { .. } | Self::None { .. } => self.work([0.0; 2]),
+            Self::Whole { .. } | Self::None { .. } => self.work([0.0; 2]),
         }
     }
 
@@ -89,8 +92,8 @@ impl<'a> Decay<'a> {
         let [n, m] = group.degree.map(|degree| f64::from(degree + 1));
         match *self {
             Self::Product { factor, size } => factor.work(n, size.x) + factor.work(m, size.y),
-            Self::Radial { radial, .. } if n * m > f64::from(MANY) => ACROSS * radial.work() * (steps(n) + steps(m)),
-            Self::Radial { radial, .. } => radial.work() * n * m,
+            Self::Whole { bounds, .. } if n * m > f64::from(MANY) => ACROSS * bounds.work() * (steps(n) + steps(m)),
+            Self::Whole { bounds, .. } => bounds.work() * n * m,
             Self::None { .. } => 0.0,
         }
     }
@@ -106,7 +109,7 @@ impl<'a> Decay<'a> {
         }
         match *self {
             Self::Product { factor, size } => kept_product(factor, size, error),
-            Self::Radial { radial, size } => kept_radial(radial, size, error),
+            Self::Whole { bounds, size, .. } => kept_whole(bounds, size, error),
             Self::None { bell } => Err(no_series(bell)),
         }
     }
@@ -119,12 +122,12 @@ impl<'a> Decay<'a> {
                 let y = Axis::new(factor, counts[0] - 1, size.y);
                 beyond_product(&x, &y, counts)
             }
-            Self::Radial { radial, size } => {
+            Self::Whole { bounds, size, .. } => {
                 let turn = TAU * size;
                 let rows = (0..).zip(counts.iter().copied().chain([0]));
                 // The nearest mode that is not there: at the end of a row, or where there is no row.
                 let nearest = rows.map(|(n, m)| (turn * DVec2::new(f64::from(n), f64::from(m))).length());
-                copies(size) * radial.beyond(nearest.fold(f64::INFINITY, f64::min), 0.5 * turn.length())
+                copies(size) * bounds.beyond(nearest.fold(f64::INFINITY, f64::min), 0.5 * turn.length())
             }
             Self::None { .. } => f64::INFINITY,
         }
@@ -143,16 +146,17 @@ impl<'a> Decay<'a> {
                 };
                 [held(&x, &y, degree[0]), held(&y, &x, degree[1])]
             }
-            Self::Radial { radial, size } if (degree[0] + 1) * (degree[1] + 1) > MANY => {
-                envelopes(radial, size, degree)
+            Self::Whole { bounds, size, .. } if (degree[0] + 1) * (degree[1] + 1) > MANY => {
+                envelopes(bounds, size, degree)
             }
-            Self::Radial { radial, size } => {
+            Self::Whole { modes, size, .. } => {
                 let counts = vec![degree[1] + 1; degree[0] as usize + 1];
-                let table = Modes::Radial(radial).table(&counts, size);
+                let table = modes.table(&counts, size);
                 let mut held = [vec![0.0; degree[0] as usize + 1], vec![0.0; degree[1] as usize + 1]];
                 for (index, coefficient) in table.iter().enumerate() {
-                    held[0][index / (degree[1] as usize + 1)] += coefficient[0].abs();
-                    held[1][index % (degree[1] as usize + 1)] += coefficient[0].abs();
+                    let coefficient: f64 = coefficient.iter().map(|part| part.abs()).sum();
+                    held[0][index / (degree[1] as usize + 1)] += coefficient;
+                    held[1][index % (degree[1] as usize + 1)] += coefficient;
                 }
                 held
             }
@@ -177,14 +181,14 @@ fn steps(harmonics: f64) -> f64 {
 
 /// What the modes of each harmonic of x, and of y, hold at most, by a bound m of |ĝ| that never grows: beside harmonic n
 /// at z = a, Σ_m κ_m m(√(a² + b²m²)) is no more than m(a) and twice the integral.
-fn envelopes(radial: &dyn Radial, size: DVec2, degree: [u32; 2]) -> [Vec<f64>; 2] {
+fn envelopes(bounds: &dyn Bounded, size: DVec2, degree: [u32; 2]) -> [Vec<f64>; 2] {
     let turn = TAU * size;
     let volume = size.element_product();
     let axis = |degree: u32, along: f64, across: f64| -> Vec<f64> {
         let doubled = |n: u32| if n == 0 { 1.0 } else { 2.0 };
         let bound = |n: u32| {
             let a = along * f64::from(n);
-            volume * (radial.envelope(a) + 2.0 / across * radial.envelope_across(a))
+            volume * (bounds.envelope(a) + 2.0 / across * bounds.envelope_across(a))
         };
         // No envelope grows.
         let (mut last, mut held) = (0, bound(0));
@@ -286,18 +290,18 @@ fn copies(size: DVec2) -> f64 {
 }
 
 /// The modes within an ellipse, found by bisection.
-fn kept_radial(radial: &dyn Radial, size: DVec2, error: f64) -> Result<Vec<u32>> {
+fn kept_whole(bounds: &dyn Bounded, size: DVec2, error: f64) -> Result<Vec<u32>> {
     let turn = TAU * size;
     let cell = 0.5 * turn.length();
     let highest = turn.min_element() * f64::from(HIGHEST_DEGREE);
     let (mut low, mut high) = (0.0, highest);
     let error = error / copies(size);
-    if radial.beyond(highest, cell) > error {
+    if bounds.beyond(highest, cell) > error {
         return Err(too_high(f64::INFINITY));
     }
     for _ in 0..40 {
         let middle = 0.5 * (low + high);
-        if radial.beyond(middle, cell) > error { low = middle } else { high = middle }
+        if bounds.beyond(middle, cell) > error { low = middle } else { high = middle }
     }
     // No mode below the radius may be missing.
     let axes = high / turn;

@@ -47,7 +47,7 @@ impl Bounds {
 pub(super) fn per_offset(bell: &Bell) -> f64 {
     match bell {
         Bell::Profile(_) => PER_OFFSET + PER_RADIUS,
-        Bell::Disc(_) => PER_OFFSET + PER_RHO,
+        Bell::Disc(_) | Bell::Iris(_) => PER_OFFSET + PER_RHO,
         _ => PER_OFFSET,
     }
 }
@@ -261,7 +261,7 @@ impl<'a> Steepness<'a> {
         // The reference takes whole periods off its own way, and a rim may be steep enough to show a root's last bit.
         match &self.ghost.bell {
             Bell::VonMises(_) | Bell::SineGaussian(_) => 4.0 * f64::EPSILON * far + self.beside_double,
-            Bell::Disc(_) => 4.0 * f64::EPSILON * far.min(self.shape.ends()),
+            Bell::Disc(_) | Bell::Iris(_) => 4.0 * f64::EPSILON * far.min(self.shape.ends()),
             _ => 0.0,
         }
     }

@@ -15,7 +15,7 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::Transform;
-use super::amplitudes::Rgb;
+use super::amplitudes::{Rgb, turned};
 use super::decay::Decay;
 use super::effort::Effort;
 use super::series;
@@ -168,13 +168,16 @@ pub(super) fn too_many(groups: &[Group]) -> Error {
     let Some(Group { bell, smallest, .. }) = sharpest else { return Error::Plan("there are no images".into()) };
     if let Bells::None = bell.shape().modes() {
         return Error::Plan(format!(
-            "a {bell} with blades has no series, and the ghosts of all pixels are nothing else; give --sources lights, or another bell"
+            "a {bell} with blades has no series, and the ghosts of all pixels are nothing else; give an iris in its place, which has one, or \
+             --sources lights"
         ));
     }
     Error::Plan(format!(
         "the ghosts of all pixels would need a series of too many modes: they have a {bell} of {:.3} x {:.3}; give a looser tolerance, \
-         --sources lights, or a lens with larger or softer ghosts",
-        smallest.x, smallest.y
+         --sources lights, or a lens with larger or softer ghosts{}",
+        smallest.x,
+        smallest.y,
+        if let Bell::Disc(_) = bell { ", as an iris has" } else { "" }
     ))
 }
 
@@ -227,9 +230,12 @@ fn add(
     scale: Rgb,
 ) {
     let size = image.ghost.size / period;
-    let (factor, means) = match image.ghost.bell.shape().modes() {
+    let (factor, parts) = match image.ghost.bell.shape().modes() {
         Bells::Product(factor) => (Some(factor), None),
-        Bells::Radial(radial) => (None, Some(radial.means(counts, size))),
+        Bells::Radial(radial) => {
+            (None, Some(radial.means(counts, size).into_iter().map(|mean| [mean, 0.0, 0.0, 0.0]).collect::<Vec<_>>()))
+        }
+        Bells::Plane(plane) => (None, Some(plane.parts(counts, size))),
         // Finding modes enough for it has failed before anyone looks at them.
         Bells::None => return,
     };
@@ -244,17 +250,17 @@ fn add(
             Some(factor) => factor.coefficients(degree[axis], size[axis]),
             None => vec![[1.0, 0.0]; degree[axis] as usize + 1],
         };
-        turned(&centred, middle[axis] / period[axis], first[axis] * spacing[axis])
+        centred_at(&centred, middle[axis] / period[axis], first[axis] * spacing[axis])
     });
     let weights = [0, 1, 2].map(|colour| image.ghost.radiance[colour] / scale[colour]);
     let mut start = 0;
     for ((n, x), &count) in x.iter().enumerate().zip(counts) {
         for (m, y) in y.iter().enumerate().take(count as usize) {
-            let mean = means.as_ref().map_or(1.0, |means| means[start + m]);
             for (colour, (waves, weight)) in waves.iter().zip(weights).enumerate() {
-                let parts = products(*x, *y, waves.each_ref().map(|wave| wave[(n, m)]));
-                for (part, value) in parts.into_iter().enumerate() {
-                    sums[start + m][3 * part + colour] += mean * weight * value;
+                let waves = products(*x, *y, waves.each_ref().map(|wave| wave[(n, m)]));
+                let waves = parts.as_ref().map_or(waves, |parts| turned(waves, parts[start + m]));
+                for (part, value) in waves.into_iter().enumerate() {
+                    sums[start + m][3 * part + colour] += weight * value;
                 }
             }
         }
@@ -263,7 +269,7 @@ fn add(
 }
 
 /// u_n e^{−inφ} / β̂(nθ), real and imaginary parts, of coefficients about a bell's centre, φ in turns.
-fn turned(centred: &[[f64; 2]], turns: f64, theta: f64) -> Vec<[f64; 2]> {
+fn centred_at(centred: &[[f64; 2]], turns: f64, theta: f64) -> Vec<[f64; 2]> {
     let (sin, cos) = (TAU * (turns - turns.round())).sin_cos();
     let mut phase = [1.0, 0.0];
     let turn = |(n, [a, b]): (usize, &[f64; 2])| {

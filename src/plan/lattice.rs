@@ -39,6 +39,8 @@ pub struct Lattice {
     pub nodes: [u32; 2],
     /// Nodes a half wave of the highest harmonic: the oversampling.
     pub oversampling: DVec2,
+    /// Whether the CPU's cores sum the series at the nodes, from modes that the plan has computed.
+    pub on_cpu: bool,
     /// A bound of the interpolation's error, relative to the field's largest value.
     #[serde(skip)]
     pub error: f64,
@@ -130,7 +132,7 @@ pub(super) fn coarsest(
     }
     let theta = TAU * step / period;
     let (x, y) = (marginals.error(order, 0, theta.x), marginals.error(order, 1, theta.y));
-    Ok(Lattice { order, step, nodes, oversampling: DVec2::new(over_x, over_y), error: x + y + x * y })
+    Ok(Lattice { order, step, nodes, oversampling: DVec2::new(over_x, over_y), on_cpu: false, error: x + y + x * y })
 }
 
 /// The step from node to node for so many nodes a half wave of the highest harmonic, and these.

@@ -63,7 +63,7 @@ pub(super) fn of_doubles(groups: &[Group], degree: [u32; 2]) -> f64 {
     let turned = f64::EPSILON * (8.0 + 2.0 * f64::from(degree[0] + degree[1]));
     let one = |group: &Group| match group.bell {
         Bell::Profile(_) | Bell::Disc(_) => group.weight * (turned + READ),
-        Bell::Paraboloid => group.weight * (turned + LOOKED_UP),
+        Bell::Paraboloid | Bell::Iris(_) => group.weight * (turned + LOOKED_UP),
         _ => group.weight * turned,
     };
     groups.iter().map(one).sum()
@@ -80,6 +80,7 @@ pub(super) fn of_exact(groups: &[Group], degree: [u32; 2]) -> f64 {
     // For a bell that ends in a jump the coefficients add up to ever more, with the root of the degree.
     let gain = |group: &Group| match group.bell {
         Bell::Gaussian | Bell::VonMises(_) | Bell::SineGaussian(_) => 1.5,
+        Bell::Iris(_) => 8.0,
         Bell::CosineSquared | Bell::Parabola | Bell::Paraboloid => 4.0,
         _ => 4.0 + 2.0 * (n + m).sqrt(),
     };

@@ -230,7 +230,10 @@ impl Brief<'_> {
         let budget = interpolation * self.usable.max(if self.given() { 0.1 * self.predicted.single() } else { 0.0 });
         let lattice =
             lattice::coarsest(self.precision, degree, self.period, &marginals, self.frame, budget, self.request)?;
-        self.finish(terms, Some(lattice))
+        let on_cpu = self.precision == Precision::Single
+            && terms.modes.is_some()
+            && cost::cpu_is_cheaper(&terms.counts, &lattice, &self.request.cost_model);
+        self.finish(terms, Some(Lattice { on_cpu, ..lattice }))
     }
 
     /// The kept terms, within a part of what may be used up.

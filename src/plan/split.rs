@@ -291,8 +291,12 @@ fn cheapest_field(counts: &[u32], period: DVec2, frame: Frame, floats: Precision
     let (low, high) = frame.bounds();
     let degree = [counts.len() as u32 - 1, counts[0] - 1];
     let nodes = |k: usize| 2.0 * NODES * f64::from(degree[k].max(1)) * (high - low)[k] / period[k] + 4.0;
-    let size =
-        cost::Size { terms: counts.iter().map(|&count| f64::from(count)).sum(), degree, nodes: [nodes(0), nodes(1)] };
+    let size = cost::Size {
+        terms: counts.iter().map(|&count| f64::from(count)).sum(),
+        degree,
+        nodes: [nodes(0), nodes(1)],
+        on_cpu: false,
+    };
     let series = [Evaluator::Series, Evaluator::Rows, Evaluator::Grid];
     series
         .into_iter()

@@ -23,6 +23,14 @@ pub struct Image {
     pub along: f64,
 }
 
+impl Image {
+    /// How far from its centre a ghost is anything at all.
+    pub(crate) fn reached(&self) -> DVec2 {
+        let shape = self.ghost.bell.shape();
+        shape.ends().min(shape.reach(NOTHING)) * self.ghost.size
+    }
+}
+
 /// A photo's light, through a lens.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Images {
@@ -33,6 +41,9 @@ pub struct Images {
 
 /// Columns of a table of all columns of pixels: some megabytes.
 const MOST_COLUMNS: usize = 2048;
+
+/// What of its peak a bell that does not end is left out at, in a sum over all pixels.
+const NOTHING: f64 = 1e-15;
 
 /// The places of points along an axis, each once.
 struct Places {
@@ -177,22 +188,22 @@ impl Images {
     fn one_by_one(&self, image: &Image, points: &[DVec2]) -> Vec<[f64; 3]> {
         let (shape, size) = (image.ghost.bell.shape(), image.ghost.size);
         let [columns, rows] = self.centres_of_pixels(image);
-        let ends = shape.ends() * size;
+        let ends = image.reached();
         let at = |point: &DVec2| {
-            let near = |centres: &[f64], place: f64, end: f64| -> Vec<usize> {
-                (0..centres.len()).filter(|at| (centres[*at] - place).abs() <= end).collect()
+            let near = |centres: &[f64], place: f64, end: f64| -> (Vec<usize>, Vec<f64>) {
+                let offsets = centres.iter().enumerate().map(|(at, centre)| (at, place - centre));
+                offsets.filter(|(_, offset)| offset.abs() <= end).unzip()
             };
-            let (across, down) = (near(&columns, point.x, ends.x), near(&rows, point.y, ends.y));
+            let ((across, xs), (down, ys)) = (near(&columns, point.x, ends.x), near(&rows, point.y, ends.y));
             let mut sum = [0.0; 3];
-            for &row in &down {
-                for &column in &across {
-                    let value = shape.value(*point - DVec2::new(columns[column], rows[row]), size);
+            shape.over(&xs, &ys, size, &mut |row, values| {
+                for (&column, &value) in across.iter().zip(values) {
                     if value != 0.0 {
-                        let light = self.raster.light(column, row);
+                        let light = self.raster.light(column, down[row]);
                         [0, 1, 2].into_iter().for_each(|colour| sum[colour] += light[colour] * value);
                     }
                 }
-            }
+            });
             sum
         };
         points.par_iter().map(at).collect()

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use super::{convert, local, tiles};
+use super::{convert, lattice, local, tiles};
 use crate::frame::{Frame, Window};
 use crate::gpu::evaluators::Evaluators;
 use crate::gpu::exact::{Exact, Waves};
@@ -12,7 +12,7 @@ use crate::gpu::range::RangePass;
 use crate::gpu::runner::Runner;
 use crate::gpu::spectrum::Spectrum;
 use crate::gpu::{Device, PassTime};
-use crate::plan::{Evaluator, Plan, Precision, Series};
+use crate::plan::{Evaluator, Lattice, Plan, Precision, Series};
 use crate::series::waves;
 use crate::{Error, Result};
 
@@ -324,6 +324,13 @@ impl Field {
                 (Evaluator::Direct | Evaluator::Local, _) => {}
                 (Evaluator::Series, _) => evaluators.series(runner, [&columns(), &rows()], spectrum)?,
                 (Evaluator::Rows, _) => evaluators.rows(runner, [&columns(), &rows()], spectrum)?,
+                (Evaluator::Grid, Some(summed @ Lattice { on_cpu: true, order, .. }))
+                    if let Some(modes) = &series.modes =>
+                {
+                    let nodes = tiles::Nodes::new(summed, series.period, frame, tile);
+                    let values = lattice::values(series, modes, &nodes, *order);
+                    evaluators.grid_of(runner, &nodes.summed_tile(&values))?;
+                }
                 (Evaluator::Grid, Some(lattice)) => {
                     let nodes = tiles::Nodes::new(lattice, series.period, frame, tile);
                     let [columns, rows] = [nodes.phases(0), nodes.phases(1)];

@@ -6,7 +6,7 @@
 use glam::DVec2;
 
 use crate::frame::{Frame, Window};
-use crate::gpu::evaluators::LatticeTile;
+use crate::gpu::evaluators::{LatticeTile, SummedTile};
 use crate::gpu::exact::{self, ExactTile};
 use crate::gpu::layout::{KNOT_BITS, Knots};
 use crate::plan::{DOUBLE_ORDER, Lattice, Series};
@@ -141,6 +141,11 @@ impl Nodes {
         LatticeTile { node_phases, steps, knots: self.knots, height: self.height }
     }
 
+    /// What one takes whose nodes have their values.
+    pub fn summed_tile<'a>(&self, values: &'a [[f32; 4]]) -> SummedTile<'a> {
+        SummedTile { nodes: self.counts, values, knots: self.knots, height: self.height }
+    }
+
     /// And what one in 64-bit floats does.
     pub fn exact_tile(&self) -> ExactTile {
         ExactTile { knots: self.knots, height: self.height }
@@ -219,8 +224,14 @@ mod tests {
         let frame = Frame::full(3000, 2000);
         let mut tightest = 0;
         for step in [1e-9, 1e-5, 3.3e-5, 1e-4, 7e-4, 2e-3, 0.1, 40.0] {
-            let lattice =
-                Lattice { order: 4, step: DVec2::splat(step), nodes: [0; 2], oversampling: DVec2::ONE, error: 0.0 };
+            let lattice = Lattice {
+                order: 4,
+                step: DVec2::splat(step),
+                nodes: [0; 2],
+                oversampling: DVec2::ONE,
+                on_cpu: false,
+                error: 0.0,
+            };
             for texture_size in [256, 16384] {
                 let most = [(texture_size / 3).min(MOST_NODES), texture_size.min(MOST_NODES)];
                 let [width, height] = sides_on(&lattice, frame, texture_size);
@@ -249,7 +260,7 @@ mod tests {
         let lattice = |nodes: [u32; 2]| {
             let (low, high) = frame.bounds();
             let step = (high - low) / DVec2::new(f64::from(nodes[0]), f64::from(nodes[1]));
-            Lattice { order: 8, step, nodes, oversampling: DVec2::ONE, error: 0.0 }
+            Lattice { order: 8, step, nodes, oversampling: DVec2::ONE, on_cpu: false, error: 0.0 }
         };
         for (degree, lattice) in
             [(100, None), (4000, None), (900, Some(lattice([3000, 2000]))), (4000, Some(lattice([4000, 3900])))]
@@ -290,8 +301,14 @@ mod tests {
 
     #[test]
     fn a_tile_sees_the_nodes_that_the_whole_window_sees() {
-        let lattice =
-            Lattice { order: 4, step: DVec2::new(0.037, 0.051), nodes: [0; 2], oversampling: DVec2::ONE, error: 0.0 };
+        let lattice = Lattice {
+            order: 4,
+            step: DVec2::new(0.037, 0.051),
+            nodes: [0; 2],
+            oversampling: DVec2::ONE,
+            on_cpu: false,
+            error: 0.0,
+        };
         let frame = Frame::full(640, 480);
         let whole = Nodes::new(&lattice, DVec2::new(5.0, 4.0), frame, frame.window);
         let tile = Window { x: 200, y: 113, width: 77, height: 64 };

@@ -11,7 +11,7 @@ use toml::Spanned;
 
 use super::file::contents;
 use super::number::Finite;
-use crate::series::{Bell, Disc, Profile, SineGaussian, VonMises};
+use crate::series::{Bell, Disc, Iris, Profile, SineGaussian, VonMises};
 
 /// The names of bells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -25,6 +25,7 @@ pub(super) enum BellName {
     SineGaussian,
     Profile,
     Disc,
+    Iris,
 }
 
 /// A radial profile: rows in the file itself, or in a CSV file beside it.
@@ -38,6 +39,8 @@ pub(super) struct ProfileTable {
 
 /// The rim of a disc that says nothing of it, in sizes.
 const RIM: f64 = 0.1;
+/// The edge of an iris that says nothing of it.
+const EDGE: f64 = 0.05;
 
 /// What a table says of its ghost's bell.
 pub(super) struct BellKeys {
@@ -45,15 +48,17 @@ pub(super) struct BellKeys {
     pub profile: Option<Spanned<String>>,
     pub mean: Option<Spanned<Finite>>,
     pub rim: Option<Spanned<Finite>>,
+    pub edge: Option<Spanned<Finite>>,
     pub blades: Option<Spanned<u32>>,
     pub rotation: Option<Spanned<Finite>>,
 }
 
 impl BellKeys {
-    /// The keys of a disc, and where they are.
-    fn of_disc(&self) -> [(&'static str, Option<Range<usize>>); 3] {
+    /// The keys of an opening, and where they are.
+    fn of_opening(&self) -> [(&'static str, Option<Range<usize>>); 4] {
         [
             ("rim", self.rim.as_ref().map(Spanned::span)),
+            ("edge", self.edge.as_ref().map(Spanned::span)),
             ("blades", self.blades.as_ref().map(Spanned::span)),
             ("rotation", self.rotation.as_ref().map(Spanned::span)),
         ]
@@ -127,6 +132,7 @@ impl Bells {
                 Bell::Profile(self.profiles.get(wanted.as_ref()).ok_or_else(unknown)?.clone())
             }
             BellName::Disc => Bell::Disc(disc(keys, name)?),
+            BellName::Iris => Bell::Iris(iris(keys, name)?),
         })
     }
 
@@ -135,9 +141,18 @@ impl Bells {
         if let Some(profile) = keys.profile.as_ref().filter(|_| name != Some(BellName::Profile)) {
             return Err(fault(profile, "`profile` belongs to a bell = \"profile\""));
         }
-        let of_disc = keys.of_disc().into_iter().find_map(|(key, span)| Some((key, span?)));
-        if let Some((key, span)) = of_disc.filter(|_| name != Some(BellName::Disc)) {
-            return Err(Fault { span, message: format!("`{key}` belongs to a bell = \"disc\"") });
+        let given = keys.of_opening().into_iter().filter_map(|(key, span)| Some((key, span?)));
+        for (key, span) in given {
+            let owners: &[(BellName, &str)] = match key {
+                "rim" => &[(BellName::Disc, "disc")],
+                "edge" => &[(BellName::Iris, "iris")],
+                _ => &[(BellName::Disc, "disc"), (BellName::Iris, "iris")],
+            };
+            if !owners.iter().any(|(owner, _)| name == Some(*owner)) {
+                let owners: Vec<String> = owners.iter().map(|(_, spelt)| format!("\"{spelt}\"")).collect();
+                let message = format!("`{key}` belongs to a bell = {}", owners.join(" or "));
+                return Err(Fault { span, message });
+            }
         }
         let Some(mean) = &keys.mean else { return Ok(()) };
         if name != Some(BellName::SineGaussian) {
@@ -155,7 +170,7 @@ fn disc(keys: &BellKeys, name: &Spanned<BellName>) -> Result<Disc, Fault> {
     let number = |key: &Option<Spanned<Finite>>| key.as_ref().map(|number| number.as_ref().0);
     let (rim, rotation) = (number(&keys.rim).unwrap_or(RIM), number(&keys.rotation).unwrap_or(0.0));
     let blades = keys.blades.as_ref().map_or(0, |blades| *blades.as_ref());
-    let [of_rim, of_blades, of_rotation] = keys.of_disc().map(|(_, span)| {
+    let [of_rim, _, of_blades, of_rotation] = keys.of_opening().map(|(_, span)| {
         let span = span.unwrap_or(name.span());
         move |message: String| Fault { span, message }
     });
@@ -163,6 +178,21 @@ fn disc(keys: &BellKeys, name: &Spanned<BellName>) -> Result<Disc, Fault> {
     Disc::new(rim, 0, 0.0).map_err(of_rim)?;
     Disc::new(RIM, blades, 0.0).map_err(of_blades)?;
     Disc::new(rim, blades, rotation).map_err(of_rotation)
+}
+
+/// The iris that a table says.
+fn iris(keys: &BellKeys, name: &Spanned<BellName>) -> Result<Iris, Fault> {
+    let number = |key: &Option<Spanned<Finite>>| key.as_ref().map(|number| number.as_ref().0);
+    let (edge, rotation) = (number(&keys.edge).unwrap_or(EDGE), number(&keys.rotation).unwrap_or(0.0));
+    let blades = keys.blades.as_ref().map_or(0, |blades| *blades.as_ref());
+    let [_, of_edge, of_blades, of_rotation] = keys.of_opening().map(|(_, span)| {
+        let span = span.unwrap_or(name.span());
+        move |message: String| Fault { span, message }
+    });
+    // Key by key, as those of a disc.
+    Iris::new(edge, 0, 0.0).map_err(of_edge)?;
+    Iris::new(EDGE, blades, 0.0).map_err(of_blades)?;
+    Iris::new(edge, blades, rotation).map_err(of_rotation)
 }
 
 fn spelt(name: &Spanned<BellName>) -> &'static str {

@@ -205,7 +205,7 @@ fn lights(path: &Path) -> Result<(Vec<Light>, Option<LengthUnit>)> {
 ///
 /// # Errors
 ///
-/// Like [`read_scene`]; also for a lens without ghosts.
+/// Like [`read_scene`]; also for a lens that has neither ghosts nor a veil.
 pub fn read_lens(path: &Path) -> Result<Lens> {
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     lens(path, &name, &text(path)?)
@@ -214,8 +214,11 @@ pub fn read_lens(path: &Path) -> Result<Lens> {
 /// The lens that `text` describes, which came from `path`.
 pub(super) fn lens(path: &Path, name: &str, text: &str) -> Result<Lens> {
     let table: LensTable = from_toml(path, text)?;
-    if table.ghosts.is_empty() {
-        return Err(Error::scene_file(path, "the lens has no ghosts: expected at least one [[lens_ghost]]"));
+    if table.ghosts.is_empty() && table.veil.is_none() {
+        return Err(Error::scene_file(
+            path,
+            "the lens has no ghosts: expected at least one [[lens_ghost]], or a [veil]",
+        ));
     }
     let located = |fault: Fault| Error::scene_file(path, pointed(text, fault.span, &fault.message));
     let bells = Bells::new(path, table.profiles, None).map_err(located)?;

@@ -94,6 +94,7 @@ pub(super) struct GhostTable {
     profile: Option<Spanned<String>>,
     mean: Option<Spanned<Finite>>,
     rim: Option<Spanned<Finite>>,
+    edge: Option<Spanned<Finite>>,
     blades: Option<Spanned<u32>>,
     rotation: Option<Spanned<Finite>>,
     center: [Finite; 2],
@@ -108,6 +109,7 @@ pub(super) struct LensGhostTable {
     profile: Option<Spanned<String>>,
     mean: Option<Spanned<Finite>>,
     rim: Option<Spanned<Finite>>,
+    edge: Option<Spanned<Finite>>,
     blades: Option<Spanned<u32>>,
     rotation: Option<Spanned<Finite>>,
     along: Finite,
@@ -164,8 +166,8 @@ impl SceneTable {
 impl GhostTable {
     /// The ghost, if its bell is to be had.
     pub fn ghost(self, bells: &Bells) -> Result<Ghost, Fault> {
-        let Self { bell, profile, mean, rim, blades, rotation, center, size, radiance } = self;
-        let bell = bells.bell(&BellKeys { bell, profile, mean, rim, blades, rotation })?;
+        let Self { bell, profile, mean, rim, edge, blades, rotation, center, size, radiance } = self;
+        let bell = bells.bell(&BellKeys { bell, profile, mean, rim, edge, blades, rotation })?;
         Ok(Ghost { bell, center: DVec2::from_array(plain(center)), size: size.0, radiance: plain(radiance) })
     }
 }
@@ -173,9 +175,9 @@ impl GhostTable {
 impl LensGhostTable {
     /// The lens ghost, if its bell is to be had and can carry light.
     pub fn lens_ghost(self, bells: &Bells) -> Result<LensGhost, Fault> {
-        let Self { bell, profile, mean, rim, blades, rotation, along, size, tint, share } = self;
+        let Self { bell, profile, mean, rim, edge, blades, rotation, along, size, tint, share } = self;
         let span = profile.as_ref().map_or(0..0, Spanned::span);
-        let bell = bells.bell(&BellKeys { bell, profile, mean, rim, blades, rotation })?;
+        let bell = bells.bell(&BellKeys { bell, profile, mean, rim, edge, blades, rotation })?;
         if bell.shape().integral(size.0) <= 0.0 {
             return Err(Fault {
                 span,

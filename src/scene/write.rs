@@ -152,6 +152,8 @@ struct BellOut {
     #[serde(skip_serializing_if = "Option::is_none")]
     rim: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    edge: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     blades: Option<u32>,
     #[serde(skip_serializing_if = "Option::is_none")]
     rotation: Option<f64>,
@@ -167,6 +169,11 @@ impl BellOut {
                 out.rim = Some(disc.rim());
                 let bladed = !disc.is_round();
                 (out.blades, out.rotation) = (bladed.then(|| disc.blades()), bladed.then(|| disc.rotation()));
+            }
+            Bell::Iris(iris) => {
+                out.edge = Some(iris.edge());
+                let bladed = !iris.is_round();
+                (out.blades, out.rotation) = (bladed.then(|| iris.blades()), bladed.then(|| iris.rotation()));
             }
             _ => {}
         }

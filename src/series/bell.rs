@@ -10,7 +10,7 @@ use super::cosine_squared::CosineSquared;
 use super::gaussian::Gaussian;
 use super::parabola::Parabola;
 use super::paraboloid::Paraboloid;
-use super::{Disc, Profile, SineGaussian, VonMises, kappa};
+use super::{Disc, Iris, Profile, SineGaussian, VonMises, kappa};
 
 /// A bell: a ghost's profile.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,6 +31,8 @@ pub enum Bell {
     Profile(Arc<Profile>),
     /// A flat disc, round or with blades.
     Disc(Disc),
+    /// An opening with a smooth edge, round or with blades.
+    Iris(Iris),
 }
 
 impl Bell {
@@ -45,6 +47,7 @@ impl Bell {
             Self::SineGaussian(bell) => bell,
             Self::Profile(profile) => &**profile,
             Self::Disc(disc) => disc,
+            Self::Iris(iris) => iris,
         }
     }
 
@@ -58,7 +61,7 @@ impl Bell {
     }
 
     /// How many kinds there are.
-    pub(crate) const KINDS: u32 = 9;
+    pub(crate) const KINDS: u32 = 10;
 
     /// Which bell it is, below [`Bell::KINDS`], as `shaders/bells/any.glsl` counts them: each that is a shader of its own.
     pub(crate) fn kind(&self) -> u32 {
@@ -72,6 +75,7 @@ impl Bell {
             Self::Profile(_) => 6,
             Self::Disc(disc) if disc.is_round() => 7,
             Self::Disc(_) => 8,
+            Self::Iris(_) => 9,
         }
     }
 
@@ -79,7 +83,7 @@ impl Bell {
     /// tests walk.
     pub fn examples() -> Vec<Self> {
         let period = DVec2::new(4.0, 3.0);
-        let [round, bladed] = Disc::examples();
+        let ([round, bladed], [_, iris]) = (Disc::examples(), Iris::examples());
         vec![
             Self::Gaussian,
             Self::CosineSquared,
@@ -90,6 +94,7 @@ impl Bell {
             Self::Profile(Arc::new(Profile::example())),
             Self::Disc(round),
             Self::Disc(bladed),
+            Self::Iris(iris),
         ]
     }
 }
@@ -116,6 +121,11 @@ pub trait Shape: Sync {
 
     /// The bell at an offset from its centre.
     fn value(&self, offset: DVec2, size: DVec2) -> f64;
+
+    /// The bell at all offsets of a lattice, given along either axis: `visit` gets the number of a row, and its values.
+    fn over(&self, xs: &[f64], ys: &[f64], size: DVec2, visit: &mut dyn FnMut(usize, &[f64])) {
+        each_row(self, xs, ys, size, visit);
+    }
 
     /// A bound of the bell along one axis: no value at offsets of at least (x, y) is beyond `along(x) * along(y)`.
     fn along(&self, distance: f64, size: f64) -> f64;
@@ -181,6 +191,20 @@ pub trait Shape: Sync {
     }
 }
 
+/// [`Shape::over`], value by value.
+pub(super) fn each_row<S: Shape + ?Sized>(
+    shape: &S,
+    xs: &[f64],
+    ys: &[f64],
+    size: DVec2,
+    visit: &mut dyn FnMut(usize, &[f64]),
+) {
+    for (index, &y) in ys.iter().enumerate() {
+        let row: Vec<f64> = xs.iter().map(|&x| shape.value(DVec2::new(x, y), size)).collect();
+        visit(index, &row);
+    }
+}
+
 /// How the coefficients of a bell are found.
 #[derive(Clone, Copy)]
 pub enum Modes<'a> {
@@ -188,6 +212,8 @@ pub enum Modes<'a> {
     Product(&'a dyn Factor),
     /// The bell depends on the radius alone, the axes scaled by the sizes.
     Radial(&'a dyn Radial),
+    /// It is neither.
+    Plane(&'a dyn Plane),
     /// Not at all: the bell has no series, and is summed, where it reaches or at every pixel.
     None,
 }
@@ -214,16 +240,8 @@ pub trait Factor: Sync {
     fn degree(&self, error: f64, size: f64) -> f64;
 }
 
-/// A bell of the radius alone; lengths are in sizes.
-pub trait Radial: Sync {
-    /// ĝ(z) = 2π ∫ r g(r) J0(zr) dr, z in radians for each size.
-    fn transform(&self, z: f64) -> f64;
-
-    /// [`Radial::transform`] at each of these z ≥ 0, as a table of coefficients asks for it.
-    fn transforms(&self, at: &[f64]) -> Vec<f64> {
-        at.par_iter().map(|&z| self.transform(z)).collect()
-    }
-
+/// How fast the transform of a bell that is no product falls; lengths are in sizes.
+pub trait Bounded: Sync {
     /// An upper bound of how far the series is off at any point if it has all modes below `z`, on a lattice of modes
     /// whose cells have the half diagonal `cell`, in the same unit.
     fn beyond(&self, z: f64, cell: f64) -> f64;
@@ -260,6 +278,24 @@ pub trait Radial: Sync {
     }
 }
 
+/// A bell of the radius alone; lengths are in sizes.
+pub trait Radial: Bounded {
+    /// ĝ(z) = 2π ∫ r g(r) J0(zr) dr, z in radians for each size.
+    fn transform(&self, z: f64) -> f64;
+
+    /// [`Radial::transform`] at each of these z ≥ 0, as a table of coefficients asks for it.
+    fn transforms(&self, at: &[f64]) -> Vec<f64> {
+        at.par_iter().map(|&z| self.transform(z)).collect()
+    }
+}
+
+/// A bell whose transform depends on the direction as well; lengths are in sizes.
+pub trait Plane: Bounded {
+    /// For each of the kept modes, harmonic by harmonic of x, ∫∫ of the bell of a size in periods times c_n c_m, s_n s_m, c_n s_m and
+    /// s_n c_m, about its centre.
+    fn parts(&self, counts: &[u32], size: DVec2) -> Vec<[f64; 4]>;
+}
+
 impl dyn Radial + '_ {
     /// The mean coefficients of the kept modes, harmonic by harmonic of x, of a size in periods; without the weight κ.
     pub fn means(&self, counts: &[u32], size: DVec2) -> Vec<f64> {
@@ -290,6 +326,10 @@ impl Modes<'_> {
             Self::Radial(radial) => {
                 let coefficient = |((n, m), mean)| [kappa(n, m) * mean, 0.0, 0.0, 0.0];
                 modes(counts).zip(radial.means(counts, size)).map(coefficient).collect()
+            }
+            Self::Plane(plane) => {
+                let weighed = |((n, m), parts): (_, [f64; 4])| parts.map(|part| kappa(n, m) * part);
+                modes(counts).zip(plane.parts(counts, size)).map(weighed).collect()
             }
             Self::None => modes(counts).map(|_| [f64::NAN; 4]).collect(),
         }

@@ -21,7 +21,7 @@ impl<'a> Distinct<'a> {
         Self { bells: Vec::new(), numbers: FxHashMap::default(), last: 0, turned: false }
     }
 
-    /// Bells that have the same bounds in one: the rotation of a disc is in none of them.
+    /// Bells that have the same bounds in one: the rotation of a disc or an iris is in none of them.
     pub fn by_bounds() -> Self {
         Self { turned: true, ..Self::new() }
     }
@@ -49,6 +49,9 @@ impl<'a> Distinct<'a> {
             (Bell::Disc(one), Bell::Disc(other)) if self.turned => {
                 (one.rim(), one.blades()) == (other.rim(), other.blades())
             }
+            (Bell::Iris(one), Bell::Iris(other)) if self.turned => {
+                (one.edge(), one.blades()) == (other.edge(), other.blades())
+            }
             _ => one == other,
         }
     }
@@ -65,6 +68,7 @@ fn digest(bell: &Bell, turned: bool) -> [u64; 4] {
             [profile.rows().count() as f64, radius, value]
         }
         Bell::Disc(disc) => [disc.rim(), f64::from(disc.blades()), if turned { 0.0 } else { disc.rotation() }],
+        Bell::Iris(iris) => [iris.edge(), f64::from(iris.blades()), if turned { 0.0 } else { iris.rotation() }],
     };
     // −0 is 0.
     [u64::from(bell.kind()), (first + 0.0).to_bits(), (second + 0.0).to_bits(), (third + 0.0).to_bits()]

@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 use glam::DVec2;
 use rayon::prelude::*;
 
-use super::bell::{Modes, Radial, Shape};
+use super::bell::{Bounded, Modes, Radial, Shape};
 use super::special::{paraboloid_kernel, paraboloid_kernel_looked_up};
 use super::tails::copies;
 
@@ -80,7 +80,9 @@ impl Radial for Paraboloid {
     fn transforms(&self, at: &[f64]) -> Vec<f64> {
         at.par_iter().map(|&z| FRAC_PI_2 * paraboloid_kernel_looked_up(z)).collect()
     }
+}
 
+impl Bounded for Paraboloid {
     fn beyond(&self, z: f64, _cell: f64) -> f64 {
         cut_off(z)
     }

@@ -290,7 +290,13 @@ fn grid(ghosts: &[Ghost], frame: Frame, columns: u32) -> Result<Plan> {
     let (low, high) = frame.bounds();
     let cells = [columns, LINES].map(|nodes| f64::from(nodes - BEYOND) + 0.5);
     let step = (high - low) / DVec2::from(cells);
-    let lattice =
-        Lattice { order: CUBIC, step, nodes: [columns, LINES], oversampling: DVec2::ONE, error: f64::INFINITY };
+    let lattice = Lattice {
+        order: CUBIC,
+        step,
+        nodes: [columns, LINES],
+        oversampling: DVec2::ONE,
+        on_cpu: false,
+        error: f64::INFINITY,
+    };
     Ok(plan.with_series(|series| series.lattice = Some(lattice)))
 }

@@ -2,7 +2,7 @@
 
 mod model;
 
-use super::{Evaluator, Group, Layer, Precision, Series, block_shift, gather};
+use super::{Evaluator, Group, Lattice, Layer, Precision, Series, block_shift, gather};
 use crate::frame::Frame;
 use crate::series::Bell;
 
@@ -67,6 +67,8 @@ pub(super) struct Size {
     pub degree: [u32; 2],
     /// Of the lattice, where there is one.
     pub nodes: [f64; 2],
+    /// Whether the CPU sums the series at them.
+    pub on_cpu: bool,
 }
 
 impl Size {
@@ -75,6 +77,7 @@ impl Size {
             terms: series.terms() as f64,
             degree: series.degree(),
             nodes: series.lattice.map_or([0.0; 2], |lattice| lattice.nodes.map(f64::from)),
+            on_cpu: series.lattice.is_some_and(|lattice| lattice.on_cpu) && series.modes.is_some(),
         }
     }
 }
@@ -95,9 +98,32 @@ pub(super) fn field(evaluator: Evaluator, precision: Precision, size: &Size, fra
         Evaluator::Grid => {
             let [columns, lines] = size.nodes;
             let strips = columns * f64::from(window.height) * model.strip;
-            rows(lines, columns) + strips + pixels * model.interpolation + GRID_PASSES * model.pass
+            let summed = if size.on_cpu { by_cpu(size.degree, size.nodes, model) } else { rows(lines, columns) };
+            summed + strips + pixels * model.interpolation + GRID_PASSES * model.pass
         }
     }
+}
+
+/// What it takes the CPU's cores to sum a series at the nodes of a lattice, in nanoseconds.
+fn by_cpu(degree: [u32; 2], [columns, rows]: [f64; 2], model: &CostModel) -> f64 {
+    // Multiply-adds in products of matrices, of three colours, a cosine and a sine each.
+    const TERM: f64 = 12.0;
+    const HARMONIC: f64 = 6.0;
+    // Readying the matrices, and moving the values to the device.
+    const NODE: f64 = 15.0;
+    let [n, m] = degree.map(|degree| f64::from(degree + 1));
+    (TERM * rows * n * m + HARMONIC * rows * columns * n) * model.veil_add + NODE * rows * columns + model.pass
+}
+
+/// Whether the CPU's cores are sooner done with a lattice than the device.
+pub(super) fn cpu_is_cheaper(counts: &[u32], lattice: &Lattice, model: &CostModel) -> bool {
+    let (degree, nodes) = ([counts.len() as u32 - 1, counts[0] - 1], lattice.nodes.map(f64::from));
+    let terms: f64 = counts.iter().map(|&count| f64::from(count)).sum();
+    let [columns, rows] = nodes;
+    let device =
+        rows * terms * model.profile + rows * columns * (f64::from(degree[0] + 1) + AROUND_HARMONICS) * model.harmonic;
+    // Calibrations of old know nothing of the CPU.
+    by_cpu(degree, nodes, model) < device
 }
 
 /// What a series costs at least, whatever its terms, in milliseconds.
@@ -106,7 +132,7 @@ pub(super) fn least(evaluator: Evaluator, frame: Frame, model: &CostModel) -> f6
     1e-6 * field(
         evaluator,
         Precision::Single,
-        &Size { terms: 1.0, degree: [0; 2], nodes: [FEWEST_NODES; 2] },
+        &Size { terms: 1.0, degree: [0; 2], nodes: [FEWEST_NODES; 2], on_cpu: false },
         frame,
         model,
     )
@@ -165,6 +191,9 @@ fn in_gaussians(bell: &Bell, precision: Precision) -> f64 {
         Bell::Disc(disc) if disc.is_round() => [1.5, 2.5],
         // Three rows of a table are read.
         Bell::Disc(_) => [5.0, 7.5],
+        // An exponential for each side.
+        Bell::Iris(iris) if iris.is_round() => [2.0, 4.0],
+        Bell::Iris(iris) => [2.0, 4.0].map(|one| 1.0 + one * f64::from(iris.blades())),
     };
     if precision == Precision::Single { single } else { double }
 }

@@ -8,7 +8,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::{Disc, HAIR};
-use crate::series::bell::{Radial, Shape as _};
+use crate::series::bell::{Bounded, Radial, Shape as _};
 use crate::series::nodes::between_nodes;
 use crate::series::special::bessel_j;
 
@@ -71,7 +71,9 @@ impl Radial for Disc {
     fn transforms(&self, at: &[f64]) -> Vec<f64> {
         between_nodes(at, self.ends(), |z| self.transform(z))
     }
+}
 
+impl Bounded for Disc {
     fn beyond(&self, z: f64, _cell: f64) -> f64 {
         self.cut_off(z)
     }

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use rayon::prelude::*;
 
 use super::Profile;
-use crate::series::bell::Radial;
+use crate::series::bell::{Bounded, Radial};
 use crate::series::nodes::between_nodes;
 use crate::series::paraboloid::cut_off;
 use crate::series::special::{bessel_j, paraboloid_kernel_looked_up};
@@ -80,7 +80,9 @@ impl Radial for Profile {
     fn transforms(&self, at: &[f64]) -> Vec<f64> {
         between_nodes(at, self.radius(), |z| self.transform(z))
     }
+}
 
+impl Bounded for Profile {
     /// The smaller of what the kinks leave, which falls slowly, and of all that is left, which falls fast where the
     /// table is smooth and ends where its rows show.
     fn beyond(&self, z: f64, cell: f64) -> f64 {
@@ -135,9 +137,9 @@ mod tests {
         assert!(profile.variance() > 0.0 && profile.integral(DVec2::ONE) > 0.0);
         assert!(profile.beyond.get().is_none(), "made though only the direct sum was asked for");
         let shared = std::sync::Arc::new(profile);
-        let first = Radial::beyond(&*shared, 20.0, 0.1);
+        let first = Bounded::beyond(&*shared, 20.0, 0.1);
         let made = shared.beyond.get().unwrap().as_ptr();
-        assert_eq!((Radial::beyond(&*shared, 20.0, 0.1), shared.beyond.get().unwrap().as_ptr()), (first, made));
+        assert_eq!((Bounded::beyond(&*shared, 20.0, 0.1), shared.beyond.get().unwrap().as_ptr()), (first, made));
         assert_eq!(*shared, trembling(), "the same profile, whatever has been made of it");
     }
 

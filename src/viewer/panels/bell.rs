@@ -5,7 +5,7 @@ use std::sync::Arc;
 use egui::{ComboBox, DragValue, Response, Ui};
 use glam::DVec2;
 
-use crate::series::{Bell, Disc, MOST_BLADES, Profile, SineGaussian, VonMises};
+use crate::series::{Bell, Disc, Iris, MOST_BLADES, Profile, SineGaussian, VonMises};
 use crate::viewer::control::item_of;
 use crate::viewer::model::Look;
 
@@ -17,11 +17,12 @@ pub struct Bells {
 
 /// What a list of bells can be, in words.
 pub const SPAN: &str = "one of gaussian, cosine-squared, parabola, paraboloid; von-mises or sine-gaussian, which are \
-                        periodic and set the period by hand; a disc; or a profile of the look's file";
+                        periodic and set the period by hand; a disc or an iris; or a profile of the look's file";
 
-/// What the parameters of a sine-Gaussian and of a disc are, in words.
+/// What the parameters of a sine-Gaussian, a disc and an iris are, in words.
 pub const PARAMETERS: &str = "μ is the sine at which a sine-gaussian is brightest, −1 to 1; of a disc, how wide the rim is in \
-                              sizes, 0 to 2, how many blades shape it, 0 where it is round, and how they are turned";
+                              sizes, 0 to 2, and of an iris the edge, 0.01 to 0.3; how many blades shape it, 0 where it \
+                              is round, and how they are turned";
 
 impl Bells {
     /// Those of a look: periodic ones with its period, and the profiles that its ghosts have.
@@ -46,7 +47,8 @@ impl Bells {
         let plain = [Bell::Gaussian, Bell::CosineSquared, Bell::Parabola, Bell::Paraboloid];
         let periodic = [Bell::VonMises(VonMises { period }), Bell::SineGaussian(SineGaussian { period, mean })];
         let disc = disc(RIM, 0, 0.0).map(Bell::Disc);
-        let named = plain.into_iter().chain(periodic).chain(disc).map(|bell| (bell.to_string(), bell));
+        let iris = iris(EDGE, 6, 0.0).map(Bell::Iris);
+        let named = plain.into_iter().chain(periodic).chain(disc).chain(iris).map(|bell| (bell.to_string(), bell));
         let profiles = self.profiles.iter().enumerate();
         let profiles = profiles.map(|(k, profile)| (format!("profile {}", k + 1), Bell::Profile(profile.clone())));
         named.chain(profiles).collect()
@@ -58,6 +60,7 @@ impl Bells {
         let same = |other: &Bell| match (other, &*bell) {
             (Bell::Profile(a), Bell::Profile(b)) => a == b,
             (Bell::Disc(_), Bell::Disc(_)) => true,
+            (Bell::Iris(_), Bell::Iris(_)) => true,
             (a, b) => a.kind() == b.kind(),
         };
         let now = all.iter().position(|(_, other)| same(other));
@@ -82,37 +85,52 @@ impl Bells {
                 *mean = before;
             }
         }
-        if let Bell::Disc(disc) = bell {
-            response |= parameters(ui, disc);
+        match bell {
+            Bell::Disc(now) => {
+                let (mut width, mut blades, mut rotation) = (now.rim(), now.blades(), now.rotation());
+                response |= opening(ui, ("rim ", 0.0..=2.0), (&mut width, &mut blades, &mut rotation));
+                *now = disc(width, blades, rotation).unwrap_or_else(|| now.clone());
+            }
+            Bell::Iris(now) => {
+                let (mut width, mut blades, mut rotation) = (now.edge(), now.blades(), now.rotation());
+                response |= opening(ui, ("edge ", 0.01..=0.3), (&mut width, &mut blades, &mut rotation));
+                *now = iris(width, blades, rotation).unwrap_or_else(|| now.clone());
+            }
+            _ => {}
         }
         response
     }
 }
 
-/// What a disc that was just chosen has for a rim.
+/// What a disc that was just chosen has for a rim, and an iris for an edge.
 const RIM: f64 = 0.1;
+const EDGE: f64 = 0.05;
 
 fn disc(rim: f64, blades: u32, rotation: f64) -> Option<Disc> {
     Disc::new(rim, blades, if blades == 0 { 0.0 } else { rotation }).ok()
 }
 
-/// The rim of a disc, its blades and, where it has any, their rotation. What makes no disc is not taken.
-fn parameters(ui: &mut Ui, now: &mut Disc) -> Response {
-    let (mut rim, mut blades, mut rotation) = (now.rim(), now.blades(), now.rotation());
-    let widths = DragValue::new(&mut rim).range(0.0..=2.0).speed(0.005).max_decimals(6).prefix("rim ");
-    let mut response = ui.add(widths);
-    let counts = DragValue::new(&mut blades).range(0..=MOST_BLADES).speed(0.05).prefix("blades ");
+fn iris(edge: f64, blades: u32, rotation: f64) -> Option<Iris> {
+    Iris::new(edge, blades, if blades == 0 { 0.0 } else { rotation }).ok()
+}
+
+/// How soft an opening is, its blades and, where it has any, their rotation.
+fn opening(
+    ui: &mut Ui,
+    (name, range): (&str, std::ops::RangeInclusive<f64>),
+    (width, blades, rotation): (&mut f64, &mut u32, &mut f64),
+) -> Response {
+    let before = *blades;
+    let mut response = ui.add(DragValue::new(width).range(range).speed(0.005).max_decimals(6).prefix(name));
+    let counts = DragValue::new(blades).range(0..=MOST_BLADES).speed(0.05).prefix("blades ");
     response |= ui.add(counts);
-    // There is nothing between a round disc and a triangle: on the way up 1 is three, and on the way down 2 is none.
-    if (1..3).contains(&blades) {
-        blades = if now.blades() == 0 { 3 } else { 0 };
+    // There is nothing between a round one and a triangle: on the way up 1 is three, and on the way down 2 is none.
+    if (1..3).contains(blades) {
+        *blades = if before == 0 { 3 } else { 0 };
     }
-    if blades > 0 {
-        let turn = DragValue::new(&mut rotation).range(-360.0..=360.0).speed(0.5).max_decimals(3).suffix("°");
+    if *blades > 0 {
+        let turn = DragValue::new(rotation).range(-360.0..=360.0).speed(0.5).max_decimals(3).suffix("°");
         response |= ui.add(turn);
-    }
-    if let Some(changed) = disc(rim, blades, rotation) {
-        *now = changed;
     }
     response
 }

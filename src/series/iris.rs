@@ -1,0 +1,310 @@
+//! The iris: the opening of a lens, seen a little out of focus. It is flat, with a smooth edge, and round or a regular polygon with as
+//! many sides as the opening has blades.
+//!
+//! A polygon is the product of one logistic step for each side, a round iris one step of the radius squared: functions without a kink
+//! anywhere, so that their transforms fall exponentially, and a series of a few dozen harmonics has what a disc's smoothstep needs
+//! thousands for.
+
+mod transform;
+
+use std::f64::consts::PI;
+use std::sync::{Arc, OnceLock};
+
+use glam::DVec2;
+
+use super::bell::{Modes, Shape, each_row};
+use super::disc::MOST_BLADES;
+use super::tails::copies;
+use transform::Strip;
+
+/// The softest edge, and the sharpest: of a sharper one a disc does as well, which ends.
+const EDGES: [f64; 2] = [0.01, 0.3];
+
+/// Where a step is less than any float of the field would show: e^−36.
+const NOTHING: f64 = 36.0;
+
+/// An opening with a smooth edge.
+#[derive(Debug, Clone)]
+pub struct Iris(Arc<Inner>);
+
+#[derive(Debug)]
+struct Inner {
+    edge: f64,
+    blades: u32,
+    rotation: f64,
+    /// Where the sides are, as directions; none where it is round.
+    sides: Vec<DVec2>,
+    /// How far the sides are from the centre.
+    apothem: f64,
+    /// What the product of steps has to be multiplied by to be 1 at the centre.
+    peak: f64,
+    /// The steepest place of all.
+    steepest: f64,
+    moments: OnceLock<Moments>,
+    strips: OnceLock<Vec<Strip>>,
+}
+
+/// ∫∫ of it, and the mean square distance from the centre along one axis.
+#[derive(Debug, Clone, Copy)]
+struct Moments {
+    area: f64,
+    variance: f64,
+}
+
+impl PartialEq for Iris {
+    fn eq(&self, other: &Self) -> bool {
+        (self.edge(), self.blades(), self.rotation()) == (other.edge(), other.blades(), other.rotation())
+    }
+}
+
+impl Iris {
+    /// An opening whose edge falls by a logistic step, e-fold within `edge` sizes far from its middle; from 90 to 10 % it takes 4.4
+    /// of those. `blades` is 0 for a round one, or how many sides it has, its corners on the circle of radius 1: the
+    /// first of them to the right, turned by `rotation` degrees against the clock.
+    ///
+    /// # Errors
+    /// What is wrong, for people: an edge that is not from 0.01 to 0.3, one or two blades or more than [`MOST_BLADES`], a rotation that
+    /// is no number, or one of a round iris.
+    pub fn new(edge: f64, blades: u32, rotation: f64) -> Result<Self, String> {
+        let [sharpest, softest] = EDGES;
+        if !(sharpest..=softest).contains(&edge) {
+            return Err(format!("the edge of an iris is from {sharpest} to {softest} sizes wide, and not {edge}"));
+        }
+        if blades != 0 && !(3..=MOST_BLADES).contains(&blades) {
+            return Err(format!(
+                "an iris has from 3 to {MOST_BLADES} blades, or 0 where it is round, and not {blades}"
+            ));
+        }
+        if !rotation.is_finite() {
+            return Err(format!("the rotation of an iris is a number of degrees, and not {rotation}"));
+        }
+        if blades == 0 && rotation != 0.0 {
+            return Err("a round iris has no rotation: it has no `blades` to be turned".into());
+        }
+        Ok(Self::made(edge, blades, rotation + 0.0))
+    }
+
+    fn made(edge: f64, blades: u32, rotation: f64) -> Self {
+        let step = PI / f64::from(blades.max(1));
+        // Whole turns go first, and exactly.
+        let turn = (rotation % 360.0).to_radians();
+        let sides: Vec<DVec2> = (0..blades).map(|k| DVec2::from_angle(turn + f64::from(2 * k + 1) * step)).collect();
+        let apothem = if blades == 0 { 1.0 } else { step.cos() };
+        let peak = match blades {
+            0 => 1.0 + (-0.5 / edge).exp(),
+            _ => (1.0 + (-apothem / edge).exp()).powi(blades as i32),
+        };
+        let steepest = match blades {
+            0 => {
+                // f (1 − f) r / e, which is steepest a little beyond the edge.
+                let slope = |k: u32| {
+                    let radius = 0.002 * f64::from(k);
+                    let step = step_down(0.5 * (radius * radius - 1.0) / edge);
+                    step * (1.0 - step) * radius / edge
+                };
+                1.01 * peak * (0..1000).map(slope).fold(0.0, f64::max)
+            }
+            // Of Σ σ_k s_k times the product of the (1 − σ_k) no more than 1/4 is to be had from one side, and from neighbours,
+            // whose directions differ, less than this.
+            _ => 0.3 * peak / edge,
+        };
+        let (moments, strips) = (OnceLock::new(), OnceLock::new());
+        Self(Arc::new(Inner { edge, blades, rotation, sides, apothem, peak, steepest, moments, strips }))
+    }
+
+    /// A round one and a polygon, for tests.
+    pub(super) fn examples() -> [Self; 2] {
+        [Self::made(0.1, 0, 0.0), Self::made(0.08, 5, 17.0)]
+    }
+
+    /// How wide the edge is, in sizes.
+    pub fn edge(&self) -> f64 {
+        self.0.edge
+    }
+
+    /// How many sides there are; 0 for a round one.
+    pub fn blades(&self) -> u32 {
+        self.0.blades
+    }
+
+    /// By how many degrees it is turned against the clock.
+    pub fn rotation(&self) -> f64 {
+        self.0.rotation
+    }
+
+    /// Whether it is round.
+    pub fn is_round(&self) -> bool {
+        self.0.blades == 0
+    }
+
+    /// At a point in sizes. `bells/iris.glsl` does the same, in the same order.
+    fn at(&self, at: DVec2) -> f64 {
+        let Inner { edge, sides, apothem, peak, .. } = &*self.0;
+        if self.is_round() {
+            return peak * step_down(0.5 * (at.length_squared() - 1.0) / edge);
+        }
+        sides.iter().fold(*peak, |product, side| product * step_down((side.dot(at) - apothem) / edge))
+    }
+
+    /// What it is at most at a radius or beyond: every point is beyond one side by no less than the radius times the apothem.
+    fn beyond_radius(&self, radius: f64) -> f64 {
+        let Inner { edge, apothem, peak, .. } = &*self.0;
+        let step = match self.is_round() {
+            true => step_down(0.5 * (radius * radius - 1.0) / edge),
+            false => step_down(apothem * (radius - 1.0) / edge),
+        };
+        (peak * step).min(1.0)
+    }
+
+    /// The radius beyond which the steps are below e^−x.
+    fn radius_of(&self, exponent: f64) -> f64 {
+        let Inner { edge, apothem, .. } = &*self.0;
+        if self.is_round() { (1.0 + 2.0 * edge * exponent).sqrt() } else { 1.0 + edge / apothem * exponent }
+    }
+
+    fn moments(&self) -> Moments {
+        *self.0.moments.get_or_init(|| {
+            let (step, values) = self.samples(0.0);
+            let side = values.nrows();
+            let middle = 0.5 * (side as f64 - 1.0);
+            let (mut sum, mut square) = (0.0, 0.0);
+            for ((_, column), value) in values.indexed_iter() {
+                let x = step * (column as f64 - middle);
+                sum += value;
+                square += value * x * x;
+            }
+            Moments { area: sum * step * step, variance: square / sum }
+        })
+    }
+}
+
+/// 1/(1 + e^t): what a step has left.
+fn step_down(t: f64) -> f64 {
+    let small = (-t.abs()).exp();
+    if t > 0.0 { small / (1.0 + small) } else { 1.0 / (1.0 + small) }
+}
+
+impl Shape for Iris {
+    fn name(&self) -> &'static str {
+        "iris"
+    }
+
+    fn shader(&self) -> &'static str {
+        "bells/iris.glsl"
+    }
+
+    fn value(&self, offset: DVec2, size: DVec2) -> f64 {
+        self.at(offset / size).min(1.0)
+    }
+
+    /// The radius is not below either offset, so the root of what both allow bounds the iris.
+    fn along(&self, distance: f64, size: f64) -> f64 {
+        self.beyond_radius((distance / size).abs()).sqrt()
+    }
+
+    fn wrap(&self, period: f64, distance: f64, size: f64) -> f64 {
+        // Beyond, it is below what f64 holds.
+        copies(period, distance, size * self.radius_of(750.0), |x| self.along(x, size))
+    }
+
+    fn steepest(&self, distance: f64) -> f64 {
+        let Inner { edge, blades, steepest, .. } = &*self.0;
+        // What is left, times the sum of the sides that it lies beyond.
+        let sides = if *blades == 0 { distance.max(1.0) } else { 1.0 + f64::from(*blades) / PI };
+        steepest.min(self.beyond_radius(distance) * sides / edge)
+    }
+
+    fn reach(&self, share: f64) -> f64 {
+        let Inner { peak, .. } = &*self.0;
+        if share >= 1.0 {
+            return 0.0;
+        }
+        // peak/(1 + e^x) is the share.
+        let exponent = (peak / share - 1.0).ln();
+        let radius = if exponent.is_finite() { self.radius_of(exponent.max(self.innermost())) } else { 0.0 };
+        radius * (1.0 + 1e-12)
+    }
+
+    /// Where it is steep, and both ends of that.
+    fn edges(&self) -> Vec<f64> {
+        let Inner { edge, .. } = &*self.0;
+        vec![1.0 - 2.2 * edge, 1.0, 1.0 + 2.2 * edge]
+    }
+
+    fn outline(&self, towards: DVec2) -> f64 {
+        let Inner { sides, apothem, .. } = &*self.0;
+        let farthest = sides.iter().map(|side| side.dot(towards)).fold(f64::MIN, f64::max);
+        if self.is_round() { 1.0 } else { apothem / farthest }
+    }
+
+    /// A side's exponential is one along x times one along y.
+    fn over(&self, xs: &[f64], ys: &[f64], size: DVec2, visit: &mut dyn FnMut(usize, &[f64])) {
+        let Inner { edge, sides, apothem, peak, .. } = &*self.0;
+        if self.is_round() {
+            return each_row(self, xs, ys, size, visit);
+        }
+        // Farther than this all steps are nothing, or there is nothing left of one; and no product is beyond what f64 holds.
+        let exponential = |exponent: f64| exponent.clamp(-300.0, 300.0).exp();
+        let across: Vec<Vec<f64>> =
+            sides.iter().map(|side| xs.iter().map(|x| exponential(side.x * x / size.x / edge)).collect()).collect();
+        let mut row = vec![0.0; xs.len()];
+        for (index, y) in ys.iter().enumerate() {
+            row.fill(1.0);
+            for (side, across) in sides.iter().zip(&across) {
+                let down = exponential((side.y * y / size.y - apothem) / edge);
+                row.iter_mut().zip(across).for_each(|(row, across)| *row *= 1.0 + across * down);
+            }
+            row.iter_mut().for_each(|row| *row = (peak / *row).min(1.0));
+            visit(index, &row);
+        }
+    }
+
+    fn integral(&self, size: DVec2) -> f64 {
+        self.moments().area * size.element_product()
+    }
+
+    fn variance(&self) -> f64 {
+        self.moments().variance
+    }
+
+    fn modes(&self) -> Modes<'_> {
+        Modes::Plane(self)
+    }
+
+    /// One over the edge, where the sides are or 1/2 where it is round, what is multiplied, and how many sides; then two sides a row.
+    fn parameters(&self) -> Vec<[f64; 4]> {
+        let Inner { edge, blades, sides, apothem, peak, .. } = &*self.0;
+        let mut rows = vec![[1.0 / edge, *apothem, *peak, f64::from(*blades)]];
+        rows.extend(sides.chunks(2).map(|pair| {
+            let second = pair.get(1).copied().unwrap_or_default();
+            [pair[0].x, pair[0].y, second.x, second.y]
+        }));
+        rows
+    }
+}
+
+impl Iris {
+    /// The exponent at the centre.
+    fn innermost(&self) -> f64 {
+        let Inner { edge, apothem, .. } = &*self.0;
+        if self.is_round() { -0.5 / edge } else { -apothem / edge }
+    }
+
+    /// How far off the real axis its steps have no pole.
+    fn widest_strip(&self) -> f64 {
+        let most = PI * self.0.edge;
+        // Of a round one η √(1 + η²) is to be below that.
+        if self.is_round() { (0.5 * ((1.0 + 4.0 * most * most).sqrt() - 1.0)).sqrt() } else { most }
+    }
+
+    /// Directions that tell what all do, evenly: by the mirrors of a polygon, from a corner to the middle of a side.
+    fn directions(&self) -> Vec<DVec2> {
+        const SAMPLES: u32 = 128;
+        let Inner { blades, rotation, .. } = &*self.0;
+        let (turn, span) = ((rotation % 360.0).to_radians(), PI / f64::from((*blades).max(1)));
+        (0..=SAMPLES).map(|k| DVec2::from_angle(turn + span * f64::from(k) / f64::from(SAMPLES))).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests;
