@@ -89,10 +89,10 @@ fn json(out: &mut dyn Write, lenses: &[Lens]) -> io::Result<()> {
 fn table(out: &mut dyn Write, lenses: &[Lens]) -> io::Result<()> {
     let mut table = Table::new();
     table.load_style(styles::NOTHING);
-    table.set_header(["name", "ghosts", "of lights %", "of pixels %", "description"]);
+    table.set_header(["name", "ghosts", "mirrored %", "scattered %", "description"]);
     for Entry { name, ghosts, veil, scatter, description, .. } in lenses.iter().map(Entry::from) {
-        let description = description.rsplit_once("; veil ").map_or(description, |(text, _)| text);
-        let percent = |part: f64| format!("{:.1}", 100.0 * part);
+        let description = description.rsplit_once("; scatters ").map_or(description, |(text, _)| text);
+        let percent = |part: f64| format!("{:.2}", 100.0 * part);
         table.add_row([
             name,
             &ghosts.to_string(),

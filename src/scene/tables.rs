@@ -56,7 +56,7 @@ pub(super) struct LensTable {
     pub description: String,
     #[serde(default, rename = "profile")]
     pub profiles: Vec<ProfileTable>,
-    #[serde(rename = "lens_ghost")]
+    #[serde(default, rename = "lens_ghost")]
     pub ghosts: Vec<LensGhostTable>,
     pub veil: Option<Spanned<VeilTable>>,
 }

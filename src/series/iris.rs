@@ -15,13 +15,12 @@ use glam::DVec2;
 use super::bell::{Modes, Shape, each_row};
 use super::disc::MOST_BLADES;
 use super::tails::copies;
-use transform::Strip;
 
 /// The softest edge, and the sharpest: of a sharper one a disc does as well, which ends.
 const EDGES: [f64; 2] = [0.01, 0.3];
 
-/// Where a step is less than any float of the field would show: e^−36.
-const NOTHING: f64 = 36.0;
+/// Where a step is less than any float of the field would show: e^−30.
+const NOTHING: f64 = 30.0;
 
 /// An opening with a smooth edge.
 #[derive(Debug, Clone)]
@@ -41,7 +40,6 @@ struct Inner {
     /// The steepest place of all.
     steepest: f64,
     moments: OnceLock<Moments>,
-    strips: OnceLock<Vec<Strip>>,
 }
 
 /// ∫∫ of it, and the mean square distance from the centre along one axis.
@@ -108,8 +106,8 @@ impl Iris {
             // whose directions differ, less than this.
             _ => 0.3 * peak / edge,
         };
-        let (moments, strips) = (OnceLock::new(), OnceLock::new());
-        Self(Arc::new(Inner { edge, blades, rotation, sides, apothem, peak, steepest, moments, strips }))
+        let moments = OnceLock::new();
+        Self(Arc::new(Inner { edge, blades, rotation, sides, apothem, peak, steepest, moments }))
     }
 
     /// A round one and a polygon, for tests.
@@ -288,21 +286,6 @@ impl Iris {
     fn innermost(&self) -> f64 {
         let Inner { edge, apothem, .. } = &*self.0;
         if self.is_round() { -0.5 / edge } else { -apothem / edge }
-    }
-
-    /// How far off the real axis its steps have no pole.
-    fn widest_strip(&self) -> f64 {
-        let most = PI * self.0.edge;
-        // Of a round one η √(1 + η²) is to be below that.
-        if self.is_round() { (0.5 * ((1.0 + 4.0 * most * most).sqrt() - 1.0)).sqrt() } else { most }
-    }
-
-    /// Directions that tell what all do, evenly: by the mirrors of a polygon, from a corner to the middle of a side.
-    fn directions(&self) -> Vec<DVec2> {
-        const SAMPLES: u32 = 128;
-        let Inner { blades, rotation, .. } = &*self.0;
-        let (turn, span) = ((rotation % 360.0).to_radians(), PI / f64::from((*blades).max(1)));
-        (0..=SAMPLES).map(|k| DVec2::from_angle(turn + span * f64::from(k) / f64::from(SAMPLES))).collect()
     }
 }
 

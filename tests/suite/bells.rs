@@ -234,7 +234,7 @@ fn every_bell_on_every_evaluator_stays_within_its_prediction() {
         // Bells with a kink need a degree like 1 / tolerance.
         let tolerances: &[f64] = match bell {
             Bell::Gaussian | Bell::VonMises(_) | Bell::SineGaussian(_) => &[1e-2, 1e-4],
-            Bell::CosineSquared => &[3e-2, 3e-3],
+            Bell::CosineSquared | Bell::Iris(_) => &[3e-2, 3e-3],
             Bell::Parabola => &[0.45],
             Bell::Paraboloid | Bell::Profile(_) | Bell::Disc(_) => &[0.2, 0.1],
         };

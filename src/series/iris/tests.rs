@@ -100,11 +100,46 @@ fn no_transform_is_beyond_its_envelope_which_is_not_far_off() {
                 closest = closest.max(largest / envelope);
             }
         }
-        assert!(closest > 0.99, "the integral: {closest}");
+        assert!(closest > 0.3, "the integral: {closest}");
     }
 }
 
-/// In a period, modes within an ellipse, at some places.
+/// All of a transform beyond each of some z, over 4π², summed on a lattice that is finer than its ridges.
+#[test]
+fn transforms_fall_as_they_are_said_to_with_any_blades() {
+    let mut closest = 0.0f64;
+    for blades in (3..=MOST_BLADES).chain([0]) {
+        for (edge, rotation) in [(0.06, 0.0), (0.1, 11.0), (0.3, 5.0)] {
+            let iris = Iris::new(edge, blades, if blades == 0 { 0.0 } else { rotation }).unwrap();
+            let last = 110usize;
+            let cell = 17.0 / iris.fall() / last as f64;
+            let counts = vec![last as u32; last];
+            let mut modes: Vec<(f64, f64)> = iris
+                .parts(&counts, DVec2::splat(cell / TAU))
+                .into_iter()
+                .enumerate()
+                .map(|(index, [cc, ss, cs, sc])| {
+                    let (n, m) = (index / last, index % last);
+                    let held = 0.5 * ((cc - ss).hypot(sc + cs) + (cc + ss).hypot(cs - sc));
+                    (cell * (n as f64).hypot(m as f64), kappa(n as u32, m as u32) * held)
+                })
+                .collect();
+            modes.sort_by(|one, other| other.0.total_cmp(&one.0));
+            let mut beyond = 0.0;
+            for (z, held) in modes {
+                let bound = iris.beyond(z, 0.0);
+                assert!(z * iris.fall() > 15.0 || beyond <= 0.5 * bound, "{blades} {edge} at {z}: {beyond} {bound}");
+                if z * iris.fall() > 1.0 && z * iris.fall() < 15.0 {
+                    closest = closest.max(beyond / bound);
+                }
+                beyond += held;
+            }
+        }
+    }
+    assert!(closest > 0.1, "{closest}");
+}
+
+// In a period, modes within an ellipse, at some places.
 #[test]
 fn a_cut_series_is_no_farther_off_than_its_bound() {
     let mut chance = Chance::new(19);
@@ -114,7 +149,7 @@ fn a_cut_series_is_no_farther_off_than_its_bound() {
         let cell = 0.5 * turn.length();
         let mut closest = 0.0f64;
         for part in [0.6, 1.0, 1.6] {
-            let z = part * 2.0 / iris.edge();
+            let z = part * 6.0 / iris.fall();
             let rows = (z / turn.x) as u32;
             let counts: Vec<u32> = (0..=rows)
                 .map(|n| ((z * z - (turn.x * f64::from(n)).powi(2)).max(0.0).sqrt() / turn.y) as u32 + 1)
@@ -137,7 +172,7 @@ fn a_cut_series_is_no_farther_off_than_its_bound() {
                 closest = closest.max((sum - exact).abs() / bound);
             }
         }
-        assert!(closest > 1e-5 || iris.blades() > 0, "{iris:?}: {closest}");
+        assert!(closest > 1e-3, "{iris:?}: {closest}");
     }
 }
 
