@@ -5,15 +5,15 @@ use glam::DVec2;
 
 use crate::plan::Plan;
 use crate::problem::Images;
-use crate::series::Modes;
+use crate::series::{Bell, Modes};
 
 /// Products that a certificate may take in f64; a fraction of a second.
 const PRODUCTS: f64 = 1.2e9;
-/// And bells that are no products: each meets every pixel that it reaches.
-const BELLS: f64 = 1e8;
+/// And values of bells that are no products: each meets every pixel that it reaches.
+const BELLS: f64 = 5e7;
 
 /// Columns and rows, at least and at most.
-const FEWEST: usize = 3;
+const FEWEST: usize = 2;
 const MOST: usize = 20;
 
 /// The pixels to look at: the corners, those where the field was found largest, and others spread between them.
@@ -38,13 +38,18 @@ fn counts(images: &Images) -> [usize; 2] {
         } else {
             let [low, high] = images.centres(image);
             let reached = (2.0 * image.reached() / (high - low).max(DVec2::splat(1e-9))).min(DVec2::ONE);
-            bells += pixels * reached.element_product();
+            bells += pixels * reached.element_product() * effort(&image.ghost.bell);
         }
     }
     let columns = (PRODUCTS / products.max(1.0)).min(MOST as f64);
     let points = (BELLS / f64::max(bells, 1.0)).min((MOST * MOST) as f64);
     let columns = columns.min(points.sqrt()).max(FEWEST as f64);
     [columns as usize, ((points / columns) as usize).clamp(FEWEST, MOST)]
+}
+
+/// What a value of a bell takes, about, over that of the simplest.
+fn effort(bell: &Bell) -> f64 {
+    if let Bell::Iris(iris) = bell { 1.0 + 0.5 * f64::from(iris.blades()) } else { 2.0 }
 }
 
 /// So many lines of `length` from `first` on: both ends, some that are wanted, and others between them.
@@ -54,7 +59,10 @@ fn lines(first: i32, length: u32, count: usize, wanted: impl Iterator<Item = i32
     let last = first + length as i32 - 1;
     let spread = (1..).map(|k| first + ((f64::from(k) * GOLDEN).fract() * f64::from(length)) as i32);
     let mut lines = Vec::with_capacity(count);
-    let all = [first, last].into_iter().chain(wanted.take(count / 3)).chain(spread.take(4 * count));
+    // Of two there is one for what is wanted, and none for the ends, where least is.
+    let (ends, wanted): (&[i32], _) =
+        if count > 2 { (&[first, last], wanted.take(count / 3)) } else { (&[], wanted.take(1)) };
+    let all = ends.iter().copied().chain(wanted).chain(spread.take(4 * count));
     for line in all {
         if lines.len() < count && (first..=last).contains(&line) && !lines.contains(&line) {
             lines.push(line);

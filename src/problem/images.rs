@@ -4,6 +4,7 @@
 //! ghost's bell, and tinted.
 
 use std::collections::HashMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 use glam::DVec2;
@@ -42,8 +43,16 @@ pub struct Images {
 /// Columns of a table of all columns of pixels: some megabytes.
 const MOST_COLUMNS: usize = 2048;
 
+/// Which of the centres, which rise or fall, are no farther than `end` from a place, and how far the place is from each.
+fn near(centres: &[f64], place: f64, end: f64) -> (Range<usize>, Vec<f64>) {
+    let inside = |centre: &&f64| (place - **centre).abs() <= end;
+    let first = centres.iter().position(|centre| inside(&centre)).unwrap_or(centres.len());
+    let offsets: Vec<f64> = centres[first..].iter().take_while(inside).map(|centre| place - centre).collect();
+    (first..first + offsets.len(), offsets)
+}
+
 /// What of its peak a bell that does not end is left out at, in a sum over all pixels.
-const NOTHING: f64 = 1e-15;
+const NOTHING: f64 = 1e-12;
 
 /// The places of points along an axis, each once.
 struct Places {
@@ -190,19 +199,11 @@ impl Images {
         let [columns, rows] = self.centres_of_pixels(image);
         let ends = image.reached();
         let at = |point: &DVec2| {
-            let near = |centres: &[f64], place: f64, end: f64| -> (Vec<usize>, Vec<f64>) {
-                let offsets = centres.iter().enumerate().map(|(at, centre)| (at, place - centre));
-                offsets.filter(|(_, offset)| offset.abs() <= end).unzip()
-            };
             let ((across, xs), (down, ys)) = (near(&columns, point.x, ends.x), near(&rows, point.y, ends.y));
             let mut sum = [0.0; 3];
             shape.over(&xs, &ys, size, &mut |row, values| {
-                for (&column, &value) in across.iter().zip(values) {
-                    if value != 0.0 {
-                        let light = self.raster.light(column, down[row]);
-                        [0, 1, 2].into_iter().for_each(|colour| sum[colour] += light[colour] * value);
-                    }
-                }
+                let added = self.raster.along_row(down.start + row, across.clone(), values);
+                sum.iter_mut().zip(added).for_each(|(sum, added)| *sum += added);
             });
             sum
         };

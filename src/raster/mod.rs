@@ -14,6 +14,7 @@
 mod lattice;
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
 use glam::DVec2;
@@ -94,9 +95,12 @@ impl Raster {
         self.flux
     }
 
-    /// The flux of one of them, by column and row of the window.
-    pub(crate) fn light(&self, column: usize, row: usize) -> [f64; 3] {
-        [0, 1, 2].map(|c| self.factors[c] * f64::from(self.channels[c].plane.row(row)[column]))
+    /// Σ of the flux of some of a row's pixels, by row and columns of the window, each times its factor.
+    pub(crate) fn along_row(&self, row: usize, columns: Range<usize>, factors: &[f64]) -> [f64; 3] {
+        [0, 1, 2].map(|c| {
+            let light = &self.channels[c].plane.row(row)[columns.clone()];
+            self.factors[c] * light.iter().zip(factors).map(|(light, factor)| f64::from(*light) * factor).sum::<f64>()
+        })
     }
 
     /// Σ_x L(x, y) Ω A_k(x) for each colour, a row for each row of pixels and a column for each A; `across` has a row for each column

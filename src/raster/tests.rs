@@ -96,6 +96,7 @@ fn what_is_no_light_has_no_flux() {
     let raster = Raster::new(&[[1.0, 2.0, -3.0, 0.0], [f32::NAN, 1.0, f32::INFINITY, 0.0]], frame).unwrap();
     // A pixel's area is 2 × 2.
     assert_eq!(raster.flux(), [4.0, 12.0, 0.0]);
-    assert_eq!((raster.light(0, 0), raster.light(1, 0)), ([4.0, 8.0, 0.0], [0.0, 4.0, 0.0]));
+    let light = |column: usize| raster.along_row(0, column..column + 1, &[1.0]);
+    assert_eq!((light(0), light(1)), ([4.0, 8.0, 0.0], [0.0, 4.0, 0.0]));
     assert!(Raster::new(&[[1.0; 4]], frame).is_err());
 }
