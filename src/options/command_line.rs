@@ -37,11 +37,15 @@ fn needs_file(look: &Look) -> bool {
         || !look.ghosts.is_empty()
 }
 
-/// Whether the veil is the one that the lens brings along, and no option is about it.
+/// Whether the veil is the one that the lens brings along, as exact as options have it.
 fn has_veil_of_lens(look: &Look) -> bool {
     let of_lens = look.lens.veil().and_then(|veil| Veil::new(&veil.section, false).ok());
     // A tolerance is one of all glare on a command line.
-    look.veil == of_lens && look.accuracy.goal == Goal::default() && look.fov.is_none()
+    let asked = match look.accuracy.goal {
+        Goal::Tolerance(tolerance) if look.accuracy.goal != Goal::default() => Some(tolerance),
+        _ => None,
+    };
+    look.veil == of_lens.map(|veil| Veil { tolerance: asked.or(veil.tolerance), ..veil })
 }
 
 /// A path as a word that is no option.

@@ -80,14 +80,6 @@ impl SceneArgs {
     /// [`Error::SceneFile`] for a file that is not right, [`Error::UnknownPreset`], and [`Error::Usage`] for options of lights
     /// where every pixel is to be a source.
     pub fn look(&self, find: &FindArgs) -> Result<Look> {
-        self.look_unless(find, Sources::Photo)
-    }
-
-    /// The same, where another source is meant if neither a file nor an option says which.
-    ///
-    /// # Errors
-    /// Those of [`SceneArgs::look`].
-    pub fn look_unless(&self, find: &FindArgs, unsaid: Sources) -> Result<Look> {
         let counts = find.counts_lights();
         if self.sources == Some(Sources::Photo) && (self.lights.is_some() || counts) {
             let option = if counts { "--max-lights" } else { "--lights" };
@@ -97,7 +89,6 @@ impl SceneArgs {
             )));
         }
         let file = self.scene.as_deref().map(scene::read_scene).transpose()?;
-        let says_sources = file.as_ref().is_some_and(|file| file.look.sources.is_some());
         let says_veil = file.as_ref().is_some_and(|file| file.veil.is_some() || file.no_veil);
         let adds = file.as_ref().is_some_and(|file| file.look.mix == Some(Mix::Add));
         let look = file.map(Look::from_scene).transpose()?;
@@ -111,8 +102,7 @@ impl SceneArgs {
             look.unit = unit;
         }
         // What is counted is lights; those that a file lists are what they are.
-        let meant =
-            (counts || unsaid == Sources::Lights && !says_sources) && matches!(look.lights, LookLights::Photo(_));
+        let meant = counts && matches!(look.lights, LookLights::Photo(_));
         if let Some(sources) = self.sources.or(meant.then_some(Sources::Lights)) {
             look.shine_by(sources);
         }

@@ -292,6 +292,7 @@ mod tests {
                 knee: 0.25,
             },
             strength: 1e9,
+            veil: None,
             mix: Mix::Energy,
             normalize: Normalize::Minmax,
             accuracy: Accuracy {
@@ -308,10 +309,11 @@ mod tests {
     #[test]
     fn the_windows_command_line_is_parsed_as_the_same_look() {
         let accuracy = Accuracy { goal: Goal::Budget(16.7), ..Accuracy::default() };
-        let eye = Look { lens: LookLens::preset("eye").unwrap(), ..Look::default() };
+        let eye = Look::default().through(LookLens::preset("eye").unwrap(), false).unwrap();
         let units = Look { unit: LengthUnit::Degrees, fov: Some(40.5), ..Look::default() };
         let found = Look { lights: LookLights::Found, ..Look::default() };
-        let old = Look { lens: LookLens::preset("v1/eye").unwrap(), find: FindOptions::VERSION_1, ..found.clone() };
+        let lens = LookLens::preset("v1/eye").unwrap();
+        let old = Look { lens, find: FindOptions::VERSION_1, veil: None, ..found.clone() };
         for look in [Look::default(), changed(), Look { accuracy, ..Look::default() }, eye, units, found, old] {
             assert_eq!(again(&look, None), look);
         }
@@ -326,7 +328,7 @@ mod tests {
         let filed = Look { lens: LookLens::File(path("my lens.toml"), lens.into()), ..changed() };
         assert_eq!(again(&filed, None), filed);
         let light = Light { position: DVec2::new(2.0, 0.1), flux: [1.0, 0.0, 0.3], size: 0.0, muted: true };
-        let own = LookLens::Own(presets::named("eye").unwrap().ghosts.into());
+        let own = LookLens::Own(presets::named("zoom").unwrap().ghosts.into());
         let listed = Look { lights: LookLights::Listed(vec![light].into()), lens: own, ..changed() };
         write_scene(&path("my look.toml"), &listed.to_scene(), false).unwrap();
         assert_eq!(again(&listed, Some(&path("my look.toml"))), listed);
@@ -426,6 +428,7 @@ mod tests {
         let expected = Look {
             lights: LookLights::Found,
             find: FindOptions { threshold: Some(2.0), ..FindOptions::default() },
+            veil: None,
             accuracy: Accuracy {
                 allow_floor: true,
                 degree: Some([1, 1]),

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use comfy_table::{CellAlignment, Table, presets};
 
 use super::{Results, Subject, exponent, short};
-use crate::choices::Sources;
 use crate::gpu::Device;
 use crate::laboratory::tradeoff;
 use crate::look::Look;
@@ -88,25 +87,20 @@ pub fn run(args: &Args) -> Result<()> {
     let progress = Progress::start(args.quiet);
     let inputs: Vec<_> = std::iter::once(args.photo.clone()).chain(args.scene.files()).collect();
     tradeoff::spare(&args.output, &inputs)?;
-    // Lights, unless somebody asks for what cannot be had.
-    let mut look = args.veil.over(args.scene.look_unless(&args.find, Sources::Lights)?, None)?;
+    let mut look = args.veil.over(args.scene.look(&args.find)?, None)?;
     args.scene.unit.check(&look)?;
     look.find = args.find.over(look.find);
-    if look.takes_photo() {
-        let reason = "tradeoff studies the ghosts of lights, and here every pixel is a source: give --sources lights";
-        return Err(Error::Usage(reason.into()));
-    }
     progress.say("reading the photo");
     let mut photo = photo::read_with(&args.photo, &args.reading.options())?;
     warn(&photo.source.notes);
-    progress.say("finding the lights");
+    progress.say("finding what glares");
     let veiled = veiled(&look, &photo)?;
     photo.frame = look.frame(&photo)?;
     // Ghosts are studied, too, in whose place there is a veil.
     look.veil = None;
     let scene = look.gather(&photo, &photo.frame);
     let name = name(&args.photo);
-    let subject = Subject::new(&name, &photo, &scene.ghosts, &veiled)?;
+    let subject = Subject::new(&name, &photo, &scene.ghosts, scene.images.clone(), &veiled)?;
     tradeoff::check(&args.output, args.force)?;
     let device = Device::open(args.backend.backends())?;
     let known = args.calibration.known(Some(device.info()));

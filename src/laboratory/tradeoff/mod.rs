@@ -18,13 +18,16 @@ mod sweeps;
 mod write;
 
 use std::rc::Rc;
+use std::sync::Arc;
 
 use serde::Serialize;
 
+use crate::frame::Frame;
 use crate::gpu::{Device, Info};
 use crate::look::Look;
 use crate::photo::Photo;
 use crate::plan::{CostModel, Evaluator, Request};
+use crate::problem::{Images, Problem};
 use crate::scene::Ghost;
 use crate::{Error, Result};
 
@@ -41,24 +44,47 @@ pub struct Subject<'a> {
     name: &'a str,
     photo: &'a Photo,
     ghosts: &'a [Ghost],
+    /// The ghosts that all of its pixels make, where they make some.
+    images: Option<Arc<Images>>,
     /// A look whose veil is studied, too.
     veil: Option<&'a Look>,
 }
 
 impl<'a> Subject<'a> {
-    /// A photo, by a name for people, and what glares in it: ghosts, and the veil of a look that has one, which says itself what the
-    /// photo spans.
+    /// A photo, by a name for people, and what glares in it: ghosts, those of all of its pixels, and the veil of a look that has one,
+    /// which says itself what the photo spans.
     ///
     /// # Errors
     /// [`Error::Usage`] where nothing glares.
-    pub fn new(name: &'a str, photo: &'a Photo, ghosts: &'a [Ghost], look: &'a Look) -> Result<Self> {
+    pub fn new(
+        name: &'a str,
+        photo: &'a Photo,
+        ghosts: &'a [Ghost],
+        images: Option<Arc<Images>>,
+        look: &'a Look,
+    ) -> Result<Self> {
         let veil = look.veil.is_some().then_some(look);
-        if ghosts.is_empty() && veil.is_none() {
+        let images = images.filter(|images| !images.all().is_empty());
+        if ghosts.is_empty() && images.is_none() && veil.is_none() {
             return Err(Error::Usage(format!(
                 "nothing glares in {name}: --lights or --scene can say what does, --threshold find fainter lights"
             )));
         }
-        Ok(Self { name, photo, ghosts, veil })
+        Ok(Self { name, photo, ghosts, images, veil })
+    }
+
+    /// Its ghosts on a frame.
+    fn problem(&self, frame: Frame) -> Arc<Problem> {
+        match &self.images {
+            Some(images) => Problem::with_images(self.ghosts, images.clone(), frame),
+            None => Problem::new(self.ghosts, frame),
+        }
+    }
+
+    /// How many ghosts it has, those of all pixels too.
+    fn ghosts(&self) -> usize {
+        let images = self.images.as_ref().map_or(0, |images| images.raster().pixels() * images.all().len());
+        self.ghosts.len() + images
     }
 }
 
@@ -150,7 +176,7 @@ pub fn measure(
     watch: &mut dyn FnMut(&'static str, f64),
 ) -> Result<Results> {
     let mut study = Study::new(subject, device, costs.unwrap_or_default(), quick)?;
-    let has_ghosts = !subject.ghosts.is_empty();
+    let has_ghosts = subject.ghosts() > 0;
     let mut stages = if has_ghosts { STAGES } else { OF_VEIL }.iter().scan(0.0, |before, &(name, part)| {
         *before += part;
         Some((name, *before - part, part))
@@ -164,7 +190,8 @@ pub fn measure(
     stage(&mut |_| sweeps::veil(&study).map(|found| points.extend(found)))?;
     let front = front::front(&points, Sweep::Tolerance);
     let mut looks = Looks::default();
-    if has_ghosts {
+    // Of a photo's images not every pixel's truth is to be had in minutes.
+    if has_ghosts && subject.images.is_none() {
         stage(&mut |watch| looks::looks(&mut study, &points, &front, watch).map(|found| looks = found))?;
     }
     let mut recommendation = front::recommend(&points);
@@ -183,7 +210,7 @@ pub fn measure(
         photo: subject.name.to_owned(),
         picture: [subject.photo.width(), subject.photo.height()],
         swept: [study.photo.width(), study.photo.height()],
-        ghosts: subject.ghosts.len(),
+        ghosts: subject.ghosts(),
         quick,
         rounds: study.bench.rounds.timed(),
         sample: study.sample.pixels.len(),

@@ -10,14 +10,15 @@ use rayon::prelude::*;
 use crate::compare::compare;
 use crate::frame::Frame;
 use crate::photo::{Photo, Shown, srgb_encode};
-use crate::reference;
-use crate::scene::Ghost;
+use crate::problem::Problem;
 
 /// Bells that the direct sum may evaluate for a sample.
 const EFFORT: usize = 20_000_000;
 /// Pixels that are spread evenly, at least and at most.
 const FEWEST: usize = 64;
 const MOST: usize = 4096;
+/// And of a photo's images.
+const FEW: usize = 9;
 
 /// Pixels of a picture with their light and the exact field.
 pub(super) struct Sample {
@@ -61,20 +62,23 @@ pub(super) fn composite(light: [f32; 3], field: [f64; 3]) -> [f32; 3] {
 }
 
 impl Sample {
-    /// Pixels evenly over the picture, and those in `also`.
-    pub fn new(photo: &Photo, ghosts: &[Ghost], also: Vec<[i32; 2]>) -> Self {
+    /// Pixels evenly over the picture, and those in `also`; of a photo's images these alone, or few, since each meets all of its pixels.
+    pub fn new(photo: &Photo, problem: &Problem, also: Vec<[i32; 2]>) -> Self {
         let frame = photo.frame;
-        let mut pixels = even(frame, (EFFORT / ghosts.len().max(1)).clamp(FEWEST, MOST));
+        let mut pixels = match problem.images() {
+            Some(_) if !also.is_empty() => Vec::new(),
+            Some(_) => even(frame, FEW),
+            None => even(frame, (EFFORT / problem.ghosts().len().max(1)).clamp(FEWEST, MOST)),
+        };
         pixels.extend(also);
         pixels.sort_unstable();
         pixels.dedup();
-        let points: Vec<_> = pixels.iter().map(|&[i, j]| frame.position(f64::from(i), f64::from(j))).collect();
         let at = |&[i, j]: &[i32; 2]| {
             let [r, g, b, _] = photo.pixels[j as usize * frame.width as usize + i as usize];
             [r, g, b]
         };
         let light: Vec<_> = pixels.iter().map(at).collect();
-        let exact = reference::direct_at(ghosts, &points);
+        let exact = problem.truth(&pixels);
         let shown = Shown::of(photo);
         let pictured = light.iter().zip(&exact).map(|(&light, &field)| pictured(shown, composite(light, field)));
         Self { pictured: pictured.collect(), pixels, light, exact, shown }
@@ -121,12 +125,14 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
+    use crate::scene::Ghost;
     use crate::series::Bell;
 
     fn sample() -> (Sample, Vec<[f64; 3]>) {
         let ghosts =
             [Ghost { bell: Bell::Gaussian, center: DVec2::ZERO, size: DVec2::splat(0.4), radiance: [0.5, 0.4, 0.3] }];
-        let sample = Sample::new(&Photo::new(30, 20, vec![[0.2, 0.2, 0.2, 1.0]; 600]), &ghosts, vec![[29, 19]]);
+        let photo = Photo::new(30, 20, vec![[0.2, 0.2, 0.2, 1.0]; 600]);
+        let sample = Sample::new(&photo, &Problem::new(ghosts, photo.frame), vec![[29, 19]]);
         let exact = sample.exact.clone();
         (sample, exact)
     }

@@ -48,13 +48,15 @@ impl<'a> Study<'a> {
         let most = subject.photo.frame.window.pixels().max(photo.pixels.len());
         let most = most.max(subject.photo.width() as usize * subject.photo.height() as usize);
         let bench = Bench::new(device, cost_model, quick, most)?;
-        // Any plan knows where the field is large; `direct` is there for every scene.
+        // Any plan knows where the field is large; `direct` is there for every scene, but for a photo's images.
         let mut request = bench.request(0.5);
-        request.evaluator = Some(crate::plan::Evaluator::Direct);
-        request.loop_rounds = usize::MAX;
-        let problem = Problem::new(subject.ghosts, photo.frame);
+        if subject.images.is_none() {
+            request.evaluator = Some(crate::plan::Evaluator::Direct);
+            request.loop_rounds = usize::MAX;
+        }
+        let problem = subject.problem(photo.frame);
         let also = plan(&problem, &request).map_or_else(|_| Vec::new(), |plan| sample_pixels(&plan));
-        let sample = Sample::new(&photo, subject.ghosts, also);
+        let sample = Sample::new(&photo, &problem, also);
         Ok(Self { subject, quick, problem, photo, bench, sample })
     }
 
@@ -80,7 +82,7 @@ impl<'a> Study<'a> {
     /// [`crate::Error::Gl`] where the driver refuses.
     pub fn everywhere(&mut self, tolerance: f64, [width, height]: [u32; 2]) -> Result<Option<f64>> {
         let problem = self.problem.on(self.subject.photo.frame.resized(width, height));
-        if self.subject.ghosts.len().saturating_mul(problem.frame().window.pixels()) > MOST_BELLS {
+        if self.subject.ghosts().saturating_mul(problem.frame().window.pixels()) > MOST_BELLS {
             return Ok(None);
         }
         let Ok(plan) = plan(&problem, &self.request(tolerance)) else { return Ok(None) };

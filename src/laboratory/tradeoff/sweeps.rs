@@ -34,14 +34,14 @@ pub(super) fn tolerance(study: &mut Study<'_>, watch: Watch<'_>) -> Result<Vec<P
         true => &[1., 2., 3., 4., 5., 6., 7.],
         false => &[1., 1.5, 2., 2.5, 3., 3.5, 4., 4.5, 5., 5.5, 6., 6.5, 7.],
     };
-    let (frame, ghosts) = (study.frame(), study.subject.ghosts);
+    let (frame, ghosts) = (study.frame(), study.subject.ghosts());
     let (mut plans, mut refused) = (Vec::new(), Vec::new());
     let mut chosen = Vec::new();
     for tolerance in exponents.iter().map(|exponent| rounded(10f64.powf(-exponent))) {
         match plan(&study.problem, &study.request(tolerance)) {
             Ok(plan) => chosen.push((tolerance, plan.evaluator())),
             Err(reason) => {
-                let point = Point::refused(Sweep::Tolerance, frame, ghosts.len(), Some(tolerance), &reason);
+                let point = Point::refused(Sweep::Tolerance, frame, ghosts, Some(tolerance), &reason);
                 refused.push(Point { planner: true, ..point });
             }
         }
@@ -50,7 +50,7 @@ pub(super) fn tolerance(study: &mut Study<'_>, watch: Watch<'_>) -> Result<Vec<P
             match plan(&study.problem, &request) {
                 Ok(plan) => plans.push((Some(tolerance), plan)),
                 Err(reason) => {
-                    let point = Point::refused(Sweep::Tolerance, frame, ghosts.len(), Some(tolerance), &reason);
+                    let point = Point::refused(Sweep::Tolerance, frame, ghosts, Some(tolerance), &reason);
                     refused.push(Point { evaluator: Some(evaluator), ..point });
                 }
             }
