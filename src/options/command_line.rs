@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use crate::choices::Sources;
 use crate::look::{Accuracy, Look, LookLens, LookLights, Shared, Veil};
-use crate::scene::{FindOptions, Goal, NO_VEIL};
+use crate::scene::{FindOptions, Goal, NO_VEIL, VeilSection};
 use crate::{Error, Result};
 
 /// The `vglare apply` that lays `look` over `photo` and writes `output`, quoted for a POSIX shell: with an option for
@@ -39,13 +39,16 @@ fn needs_file(look: &Look) -> bool {
 
 /// Whether the veil is the one that the lens brings along, as exact as options have it.
 fn has_veil_of_lens(look: &Look) -> bool {
-    let of_lens = look.lens.veil().and_then(|veil| Veil::new(&veil.section, false).ok());
     // A tolerance is one of all glare on a command line.
     let asked = match look.accuracy.goal {
         Goal::Tolerance(tolerance) if look.accuracy.goal != Goal::default() => Some(tolerance),
         _ => None,
     };
-    look.veil == of_lens.map(|veil| Veil { tolerance: asked.or(veil.tolerance), ..veil })
+    let of_lens = look
+        .lens
+        .veil()
+        .map(|veil| VeilSection { tolerance: asked.or(veil.section.tolerance), ..veil.section.clone() });
+    look.veil == of_lens.and_then(|section| Veil::new(&section, false).ok())
 }
 
 /// A path as a word that is no option.

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use comfy_table::{CellAlignment, Table, presets};
 
 use super::{Results, Subject, exponent, short};
+use crate::Result;
 use crate::gpu::Device;
 use crate::laboratory::tradeoff;
 use crate::look::Look;
@@ -19,7 +20,6 @@ use crate::photo::{self, Photo};
 use crate::terminal::progress::Progress;
 use crate::terminal::stderr::warn;
 use crate::terminal::stdout;
-use crate::{Error, Result};
 
 /// Show what accuracy costs for a photo on this machine
 ///
