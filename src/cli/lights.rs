@@ -61,7 +61,7 @@ pub fn run(args: &Args) -> Result<()> {
     let look = args.unit.over(Look { find: options, ..Look::default() });
     args.unit.check(&look)?;
     let frame = look.frame(&photo)?;
-    let found = look.find(&photo, &frame);
+    let found = look.find(&photo, &look.recovered(&photo), &frame);
     if args.json {
         stdout::json(|out| json(out, &found, look.unit))
     } else {
@@ -206,7 +206,13 @@ mod tests {
             options(&["a.exr", "--threshold", "2.5", "--merge", "0", "--max-lights", "7", "--firefly-limit", "1"]);
         assert_eq!(
             given,
-            FindOptions { threshold: Some(2.5), merge: 0.0, max_lights: 7, firefly_limit: 1.0, knee: 0.0 }
+            FindOptions {
+                threshold: Some(2.5),
+                merge: 0.0,
+                max_lights: 7,
+                firefly_limit: 1.0,
+                ..FindOptions::default()
+            }
         );
         for bad in [
             ["--threshold", "nan"],

@@ -3,7 +3,7 @@
 use super::{Accuracy, Look, LookLens, LookLights, Shared, Veil};
 use crate::choices::{LengthUnit, Mix, Sources};
 use crate::scene::presets::{DEFAULT_PRESET, NO_LENS};
-use crate::scene::{AccuracySection, FindOptions, FindSection, LookSection, SceneFile, VeilSection};
+use crate::scene::{AccuracySection, FindOptions, FindSection, LookSection, Recover, SceneFile, VeilSection};
 use crate::{Error, Result};
 
 impl Look {
@@ -30,7 +30,7 @@ impl Look {
             None if scene.lens_ghosts.is_empty() => LookLens::preset(DEFAULT_PRESET)?,
             None => LookLens::Own(scene.lens_ghosts.into()),
         };
-        let LookSection { strength, size, tint, mix, normalize, unit, fov, sources: _ } = scene.look;
+        let LookSection { strength, size, tint, mix, normalize, unit, fov, sources: _, recover } = scene.look;
         let AccuracySection { goal, allow_floor, evaluator } = scene.accuracy;
         let of_veil = scene.veil.as_ref().and_then(|veil| veil.fov);
         if let (Some(one), Some(other)) = (fov, of_veil)
@@ -57,7 +57,7 @@ impl Look {
             tint: tint.unwrap_or([1.0; 3]),
             lights,
             ghosts: scene.ghosts.into(),
-            find: scene.find.options(),
+            find: FindOptions { recover: recover.unwrap_or_default(), ..scene.find.options() },
             strength: strength.unwrap_or(1.0),
             veil,
             mix: mix.unwrap_or_default(),
@@ -100,7 +100,7 @@ impl Look {
         let add = matches!(lights, LookLights::FoundAnd(_));
         let sources = matches!(lights, LookLights::Photo(_)).then_some(Sources::Photo);
         let Accuracy { goal, allow_floor, degree, period, evaluator } = *accuracy;
-        let FindOptions { threshold, merge, max_lights, firefly_limit, knee } = *find;
+        let FindOptions { threshold, merge, max_lights, firefly_limit, knee, recover } = *find;
         SceneFile {
             description: description.clone(),
             preset,
@@ -117,6 +117,7 @@ impl Look {
                 unit: (*unit != LengthUnit::OF_FILES).then_some(*unit),
                 fov: if veil.is_some() { None } else { *fov },
                 sources,
+                recover: (recover != Recover::default()).then_some(recover),
             },
             find: FindSection {
                 threshold,
@@ -169,7 +170,14 @@ mod tests {
             tint: [1.0, 0.3, 0.0],
             lights: LookLights::Listed(vec![light].into()),
             ghosts: vec![ghost.clone()].into(),
-            find: FindOptions { threshold: Some(3.5), merge: 0.1, max_lights: 5, firefly_limit: 20.0, knee: 0.5 },
+            find: FindOptions {
+                threshold: Some(3.5),
+                merge: 0.1,
+                max_lights: 5,
+                firefly_limit: 20.0,
+                knee: 0.5,
+                recover: Recover::Stops(3.5),
+            },
             strength: 1.7,
             veil: None,
             mix: Mix::Energy,

@@ -74,12 +74,13 @@ fn options(look: &Look) -> Result<Vec<String>> {
     options.changed("--unit", *unit, default.unit, name);
     options.given("--fov", *fov, |fov| fov.to_string());
     options.changed("--axis", *axis, default.axis, pair);
-    let FindOptions { threshold, merge, max_lights, firefly_limit, knee } = *find;
+    let FindOptions { threshold, merge, max_lights, firefly_limit, knee, recover } = *find;
     options.given("--threshold", threshold, |x| x.to_string());
     options.changed("--merge", merge, default.find.merge, |x| x.to_string());
     options.changed("--max-lights", max_lights, default.find.max_lights, |n| n.to_string());
     options.changed("--firefly-limit", firefly_limit, default.find.firefly_limit, |x| x.to_string());
     options.changed("--knee", knee, default.find.knee, |x| x.to_string());
+    options.changed("--recover", recover, default.find.recover, |recover| recover.to_string());
     options.changed("--strength", *strength, default.strength, |x| x.to_string());
     options.changed("--size", *size, default.size, |x| x.to_string());
     options.changed("--tint", *tint, default.tint, |[r, g, b]| format!("{r},{g},{b}"));

@@ -250,7 +250,7 @@ mod tests {
     use crate::choices::{Evaluator, LengthUnit, Mix, Normalize};
     use crate::look::{Accuracy, LookLens, LookLights};
     use crate::options::command_line;
-    use crate::scene::{FindOptions, Goal, Light, presets, write_scene};
+    use crate::scene::{FindOptions, Goal, Light, Recover, presets, write_scene};
 
     #[derive(clap::Parser)]
     struct Cli {
@@ -280,7 +280,14 @@ mod tests {
             axis: DVec2::new(-0.1, 1.0 / 3.0),
             size: 0.7,
             tint: [1.0, 0.1, 0.0],
-            find: FindOptions { threshold: Some(1e-7), merge: 0.0, max_lights: 5, firefly_limit: 0.0, knee: 0.25 },
+            find: FindOptions {
+                threshold: Some(1e-7),
+                merge: 0.0,
+                max_lights: 5,
+                firefly_limit: 0.0,
+                knee: 0.25,
+                recover: Recover::Stops(4.5),
+            },
             strength: 1e9,
             mix: Mix::Energy,
             normalize: Normalize::Minmax,
@@ -332,6 +339,7 @@ mod tests {
             ("max_lights", look.find.max_lights.to_string()),
             ("firefly_limit", look.find.firefly_limit.to_string()),
             ("knee", look.find.knee.to_string()),
+            ("recover", look.find.recover.to_string()),
             ("strength", look.strength.to_string()),
             ("size", look.size.to_string()),
             ("tint", look.tint.map(|part| part.to_string()).join(",")),
@@ -355,7 +363,7 @@ mod tests {
         let line = format!("vglare apply 'my night.exr' -o \"it's.png\" --scene {}", path.display());
         assert_eq!(look(&line), changed());
         let given = "--preset classic-prime --axis 0,0 --size 1 --tint 1,1,1 --threshold 2 --merge 0.02 \
-                     --max-lights 64 --firefly-limit 1000 --knee 0 --strength 1 --mix add --normalize none --tolerance 0.001 --degree 1,1 \
+                     --max-lights 64 --firefly-limit 1000 --knee 0 --recover auto --strength 1 --mix add --normalize none --tolerance 0.001 --degree 1,1 \
                      --period 3,3 --evaluator grid";
         let expected = Look {
             find: FindOptions { threshold: Some(2.0), ..FindOptions::default() },

@@ -4,7 +4,7 @@ use vglare::choices::{Border, LengthUnit, Mix, Normalize};
 use vglare::look::Accuracy;
 use vglare::photo::ToneMap;
 use vglare::psf::Luminance;
-use vglare::scene::{FindOptions, Ghost};
+use vglare::scene::{FindOptions, Ghost, Recover};
 use vglare::series::Bell;
 use vglare::viewer::{KEYS, Shows, Viewing};
 
@@ -47,7 +47,14 @@ fn changed(session: &mut Session) -> (Look, Viewing) {
     let (before, viewing) = (document.look.clone(), document.viewing);
     let look = &mut document.look;
     (look.strength, look.size, look.tint, look.axis) = (0.5, 2.0, [0.5, 0.25, 2.0], DVec2::new(0.5, -0.5));
-    look.find = FindOptions { threshold: Some(3.0), merge: 0.5, max_lights: 3, firefly_limit: 100.0, knee: 0.0 };
+    look.find = FindOptions {
+        threshold: Some(3.0),
+        merge: 0.5,
+        max_lights: 3,
+        firefly_limit: 100.0,
+        knee: 0.0,
+        recover: Recover::Stops(3.0),
+    };
     (look.mix, look.normalize) = (Mix::Energy, Normalize::Clamp);
     look.accuracy = Accuracy {
         goal: Goal::Tolerance(1e-2),
