@@ -5,6 +5,8 @@
 //!
 //! \[FH12\] P. Felzenszwalb, D. Huttenlocher, "Distance Transforms of Sampled Functions", Theory of Computing 8, 2012.
 
+use super::mask::Mask;
+
 /// Rows to the nearest pixel of the same column that is not in the mask; [`FAR`] where there is none.
 pub(super) struct Columns {
     width: usize,
@@ -16,19 +18,25 @@ const FAR: u32 = 1 << 30;
 
 impl Columns {
     /// Of a mask, row by row.
-    pub fn new(mask: &[bool], width: usize) -> Self {
-        let mut rows: Vec<u32> = mask.iter().map(|&inside| if inside { FAR } else { 0 }).collect();
+    pub fn new(mask: &Mask) -> Self {
+        let width = mask.width;
+        // Memory of rows that have none in the mask is never touched.
+        let mut rows = vec![0u32; mask.pixels.len()];
         let height = rows.len() / width.max(1);
         let step = |near: &[u32], row: &mut [u32]| {
             row.iter_mut().zip(near).for_each(|(own, near)| *own = (*own).min(near + 1));
         };
-        for j in 1..height {
+        let clipped: Vec<usize> = mask.rows().map(|(row, _)| row).collect();
+        for (j, line) in mask.rows() {
             let (above, below) = rows.split_at_mut(j * width);
-            step(&above[(j - 1) * width..], &mut below[..width]);
+            below.iter_mut().zip(line).for_each(|(rows, inside)| *rows = if *inside { FAR } else { 0 });
+            if j > 0 {
+                step(&above[(j - 1) * width..], &mut below[..width]);
+            }
         }
-        for j in (1..height).rev() {
-            let (above, below) = rows.split_at_mut(j * width);
-            step(&below[..width], &mut above[(j - 1) * width..]);
+        for j in clipped.into_iter().rev().filter(|j| j + 1 < height) {
+            let (above, below) = rows.split_at_mut((j + 1) * width);
+            step(&below[..width], &mut above[j * width..]);
         }
         Self { width, rows }
     }
@@ -107,7 +115,7 @@ mod tests {
                 state >> 24
             };
             let mask: Vec<bool> = (0..width * height).map(|_| chance() < 245).collect();
-            let columns = Columns::new(&mask, width);
+            let columns = Columns::new(&Mask::of(mask.clone(), width));
             let mut parabolas = Parabolas::default();
             for row in 0..height {
                 let mut column = 0;
@@ -127,7 +135,7 @@ mod tests {
                 }
             }
         }
-        let all = Columns::new(&[true; 6], 3);
+        let all = Columns::new(&Mask::of(vec![true; 6], 3));
         assert_eq!(all.along(1, 0, 3, 1.0, &mut Parabolas::default()), [f64::INFINITY; 3]);
     }
 }

@@ -13,6 +13,7 @@
 //! lamps are small and stand out, skies and paper are large or bright all around. See [`Region::standing_out`] and [`of_share`].
 
 mod distance;
+mod mask;
 mod regions;
 
 use rayon::prelude::*;
@@ -23,6 +24,7 @@ use super::find::FindOptions;
 use super::lit::Lit;
 use crate::frame::Frame;
 use distance::{Columns, Parabolas};
+use mask::Mask;
 use regions::{Region, Run, runs};
 
 /// What becomes of clipped highlights where they make glare.
@@ -183,8 +185,6 @@ impl Recovered {
 const END: f32 = 0.9887;
 /// Between clipped pixels a code may be a little less: noise, and what JPEG makes of it.
 const NEARLY: f32 = 0.9 * END;
-/// Of the eight about it so many have to be clipped, then.
-const ABOUT: usize = 5;
 /// In scene-linear light: this share of the largest luminance.
 const AT_PEAK: f32 = 0.995;
 /// So many pixels that hang together are a patch, there.
@@ -214,12 +214,12 @@ pub fn recover(pixels: &[[f32; 4]], frame: &Frame, emission: Emission, is_for_di
     let width = frame.window.width as usize;
     let scale = if is_for_display { Scale::Display } else { Scale::linear(pixels, width, emission) };
     let clipped = |pixel: &[f32; 4]| emission.share(pixel) > 0.0 && scale.reach(pixel, emission) >= scale.end();
-    let mut mask: Vec<bool> = pixels.par_iter().map(clipped).collect();
-    if !mask.par_iter().any(|clipped| *clipped) {
+    let mut mask = Mask::new(pixels, width, clipped);
+    if mask.is_empty() {
         return Recovered::nothing(by);
     }
     if is_for_display {
-        close(&mut mask, pixels, width, emission);
+        mask.close(|pixel| emission.share(pixel) > 0.0 && scale.reach(pixel, emission) >= NEARLY, pixels);
     }
     Highlights::new(pixels, frame, emission, scale, mask).recovered(by)
 }
@@ -266,21 +266,6 @@ impl Scale {
     }
 }
 
-/// Takes for clipped what is nearly so, and has clipped pixels about it.
-fn close(mask: &mut [bool], pixels: &[[f32; 4]], width: usize, emission: Emission) {
-    let height = mask.len() / width.max(1);
-    let about = |at: usize| -> usize {
-        let (x, y) = (at % width, at / width);
-        let rows = y.saturating_sub(1)..(y + 2).min(height);
-        let columns = x.saturating_sub(1)..(x + 2).min(width);
-        rows.map(|j| mask[j * width..][columns.clone()].iter().filter(|clipped| **clipped).count()).sum()
-    };
-    let nearly = |pixel: &[f32; 4]| Scale::Display.reach(pixel, emission) >= NEARLY && emission.share(pixel) > 0.0;
-    let is_in = |&at: &usize| !mask[at] && nearly(&pixels[at]) && about(at) >= ABOUT;
-    let more: Vec<usize> = (0..mask.len()).into_par_iter().filter(is_in).collect();
-    more.into_iter().for_each(|at| mask[at] = true);
-}
-
 /// S of [`Recover::Auto`] where a share of the picture is clipped, before the surroundings have their say.
 ///
 /// Of lamps and windows in photos of which more is known, exposed as a camera would, the mean brightness is 140 to 330 times white where
@@ -295,11 +280,11 @@ fn of_share(share: f64) -> f64 {
 }
 
 impl Region {
-    /// How much it stands out from what is some way outside of it, 0 to 1: of what there is at least half as bright as the clipped level,
-    /// less.
+    /// How much it stands out from what is some way outside of it, 0 to 1: all, where that is at most 0.6 times as bright as the clipped
+    /// level.
     fn standing_out(&self) -> f64 {
         let [sum, pixels] = self.outside;
-        if pixels > 0.0 { (2.0 - 2.0 * sum / pixels).clamp(0.0, 1.0) } else { 1.0 }
+        if pixels > 0.0 { (2.5 - 2.5 * sum / pixels).clamp(0.0, 1.0) } else { 1.0 }
     }
 }
 
@@ -312,16 +297,16 @@ struct Highlights<'a> {
     reach: f64,
     emission: Emission,
     scale: Scale,
-    mask: Vec<bool>,
+    mask: Mask,
     runs: Vec<Run>,
     regions: Vec<Region>,
 }
 
 impl<'a> Highlights<'a> {
-    fn new(pixels: &'a [[f32; 4]], frame: &Frame, emission: Emission, scale: Scale, mask: Vec<bool>) -> Self {
+    fn new(pixels: &'a [[f32; 4]], frame: &Frame, emission: Emission, scale: Scale, mask: Mask) -> Self {
         let (width, aspect) = (frame.window.width as usize, frame.pixel_aspect);
         let reach = REACH * (aspect * f64::from(frame.width)).min(f64::from(frame.height));
-        let (runs, count) = runs(&mask, width);
+        let (runs, count) = runs(&mask);
         let regions = vec![Region::default(); count];
         let mut all = Self { pixels, width, aspect, reach, emission, scale, mask, runs, regions };
         all.look_around();
@@ -332,7 +317,7 @@ impl<'a> Highlights<'a> {
     fn outside(&self, x: isize, y: isize) -> Option<&'a [f32; 4]> {
         let inside = x >= 0 && y >= 0 && (x as usize) < self.width;
         let at = inside.then(|| y as usize * self.width + x as usize)?;
-        (!*self.mask.get(at)?).then(|| &self.pixels[at])
+        (!*self.mask.pixels.get(at)?).then(|| &self.pixels[at])
     }
 
     /// Sees what is at the regions' rims, and beyond.
@@ -402,8 +387,8 @@ impl<'a> Highlights<'a> {
             return Recovered { told: Some(told), ..Recovered::nothing(by) };
         }
         let regions: Vec<_> = self.regions.iter().map(|region| (stops(region), self.hue(region.colour))).collect();
-        let columns = Columns::new(&self.mask, self.width);
-        let mut pixels = self.pixels.to_vec();
+        let columns = Columns::new(&self.mask);
+        let mut pixels: Vec<_> = self.pixels.par_iter().copied().collect();
         let rows: Vec<&[Run]> = self.runs.chunk_by(|one, other| one.row == other.row).collect();
         // The rows that have some, each with its own.
         let mut lines: Vec<(&mut [[f32; 4]], &[Run])> = Vec::with_capacity(rows.len());

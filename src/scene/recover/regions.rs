@@ -1,5 +1,7 @@
 //! Clipped pixels that hang together, and what lies around them.
 
+use super::mask::Mask;
+
 /// Columns `start..end` of a row, all of them clipped and those beside them not, and the region that they are in.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Run {
@@ -20,16 +22,18 @@ pub(super) struct Region {
 }
 
 /// The runs of a mask, row by row and from the left, and how many regions they are in, which touch nowhere, not at corners either.
-pub(super) fn runs(mask: &[bool], width: usize) -> (Vec<Run>, usize) {
+pub(super) fn runs(mask: &Mask) -> (Vec<Run>, usize) {
     let mut runs: Vec<Run> = Vec::new();
     let mut parents: Vec<usize> = Vec::new();
-    let mut above = 0..0;
-    for (row, line) in mask.chunks_exact(width.max(1)).enumerate() {
+    let mut last = 0..0;
+    for (row, line) in mask.rows() {
+        // A row may have none above it.
+        let above = if runs.last().is_some_and(|run| run.row + 1 == row) { last } else { 0..0 };
         let (first, mut touched) = (runs.len(), above.start);
         let mut start = 0;
         while let Some(skip) = line[start..].iter().position(|clipped| *clipped) {
             start += skip;
-            let end = line[start..].iter().position(|clipped| !clipped).map_or(width, |length| start + length);
+            let end = line[start..].iter().position(|clipped| !clipped).map_or(line.len(), |length| start + length);
             while touched < above.end && runs[touched].end < start {
                 touched += 1;
             }
@@ -49,7 +53,7 @@ pub(super) fn runs(mask: &[bool], width: usize) -> (Vec<Run>, usize) {
             runs.push(Run { row, start, end, region });
             start = end;
         }
-        above = first..runs.len();
+        last = first..runs.len();
     }
     let mut numbers = vec![usize::MAX; parents.len()];
     let mut count = 0;
@@ -81,12 +85,13 @@ mod tests {
     fn what_touches_at_a_corner_is_one_region() {
         let of = |rows: &[&str]| {
             let mask: Vec<bool> = rows.iter().flat_map(|row| row.chars().map(|c| c == '#')).collect();
-            let (runs, regions) = runs(&mask, rows[0].len());
+            let (runs, regions) = runs(&Mask::of(mask, rows[0].len()));
             (runs.iter().map(|run| run.region).collect::<Vec<_>>(), regions)
         };
         assert_eq!(of(&["#.#.#", ".#...", "....#"]), (vec![0, 0, 1, 0, 2], 3));
         // Two that join only further down, and one within.
         assert_eq!(of(&["#...#", "#.#.#", "#...#", "#####"]), (vec![0, 0, 0, 1, 0, 0, 0, 0], 2));
+        assert_eq!(of(&["##.", "...", "##."]), (vec![0, 1], 2));
         assert_eq!(of(&["...", "..."]), (vec![], 0));
         assert_eq!(of(&["###", "###"]), (vec![0, 0], 1));
     }

@@ -20,7 +20,10 @@ impl Workplace {
     fn glare(&self, photo: &str, options: &[&str]) -> (String, serde_json::Value) {
         let mut args =
             vec!["apply", photo, "-o", "out.exr", "--glare", "glare.pfm", "--report", "report.json", "--force"];
-        args.extend(["--lens", "lens.toml", "--no-calibration"]);
+        args.push("--no-calibration");
+        if !options.contains(&"--lens") {
+            args.extend(["--lens", "lens.toml"]);
+        }
         args.extend(options);
         let said = self.vglare(&args).succeeded().stdout();
         (said, self.read_json("report.json"))
@@ -56,8 +59,8 @@ fn clipped_lamps_make_more_glare_and_the_picture_keeps_what_it_shows() {
         assert_eq!((&told["asked"], &told["pixels"], &told["stops"]), (&json!(4.0), &json!(193), &json!(4.0)));
         assert!(told["share"].as_f64().unwrap() > 0.3, "{told}");
         assert!((kept / shown - 1.0).abs() < 1e-5, "{kept} {shown}");
-        // Without the room, it would be 16 but for the rim.
-        assert!(glare > 1.9 * plain && glare < 16.0 * plain, "{more:?}: {glare} {plain}");
+        // All of a rim is not as bright; a lamp that is brighter in its middle is smaller, and its ghosts fall into the picture.
+        assert!(glare > 1.9 * plain && glare < 20.0 * plain, "{more:?}: {glare} {plain}");
         let (said, _, [auto, _]) = with("auto");
         assert!(said.contains("up to 256 times as bright") && auto > 5.0 * glare, "{said}");
         let options = [more, &[]].concat();
@@ -132,7 +135,7 @@ fn what_is_clipped_everywhere_stays_and_is_told() {
     let place = Workplace::new();
     place.text("lens.toml", LENS);
     for (name, size) in [("dot.png", 1), ("white.png", 20)] {
-        place.write(name, &Photo::new(size, size, vec![[1.0; 4]; (size * size) as usize]));
+        place.write(name, &Photo::new(size, size, vec![[40.0, 40.0, 40.0, 1.0]; (size * size) as usize]));
         let (said, report) = place.glare(name, &["--sources", "photo"]);
         assert!(said.contains("recovered: nothing of ") && said.contains("all of the picture is clipped"), "{said}");
         assert_eq!(report["recover"]["pixels"], json!(0));
