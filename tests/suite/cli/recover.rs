@@ -60,7 +60,7 @@ fn clipped_lamps_make_more_glare_and_the_picture_keeps_what_it_shows() {
         assert!(told["share"].as_f64().unwrap() > 0.3, "{told}");
         assert!((kept / shown - 1.0).abs() < 1e-5, "{kept} {shown}");
         // All of a rim is not as bright; a lamp that is brighter in its middle is smaller, and its ghosts fall into the picture.
-        assert!(glare > 1.9 * plain && glare < 20.0 * plain, "{more:?}: {glare} {plain}");
+        assert!(glare > 1.5 * plain && glare < 20.0 * plain, "{more:?}: {glare} {plain}");
         let (said, _, [auto, _]) = with("auto");
         assert!(said.contains("up to 256 times as bright") && auto > 5.0 * glare, "{said}");
         let options = [more, &[]].concat();
@@ -82,7 +82,8 @@ fn a_veil_is_of_what_shines() {
         (place.sums()[0], report)
     };
     let ((plain, _), (glare, report)) = (veil("none"), veil("6"));
-    assert!(glare > 10.0 * plain, "{glare} {plain}");
+    // The room scatters, too.
+    assert!(glare > 4.0 * plain, "{glare} {plain}");
     let ledger = &report["veil"]["ledger"];
     let part = |name: &str| ledger[name][1].as_f64().unwrap();
     assert!(part("light") > 10.0 * part("inside") / 1.2 && part("lost") >= 0.0, "{ledger}");
