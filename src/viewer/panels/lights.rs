@@ -222,7 +222,7 @@ fn find(ui: &mut Ui, document: &mut Document) {
     }
 }
 
-/// How clipped pixels shine: by their photo's kind, or by so many stops.
+/// How clipped pixels shine: by their photo's kind, or by so many stops. Where neither that nor a look has something to say, there is no row.
 fn recover(ui: &mut Ui, document: &mut Document, stage: &Stage) {
     let number = |recover| match recover {
         Recover::Auto => None,
@@ -230,6 +230,10 @@ fn recover(ui: &mut Ui, document: &mut Document, stage: &Stage) {
         Recover::Stops(stops) => Some(stops),
     };
     let told = stage.recovery();
+    let is_set = [&document.look, &document.opened].iter().any(|look| look.find.recover != Recover::Auto);
+    if !is_set && !document.photo.source.display_referred {
+        return;
+    }
     let (before, opened) = (number(document.look.find.recover), number(document.opened.find.recover));
     let mut now = before;
     let open = told.map_or(0.0, |told| told.stops);

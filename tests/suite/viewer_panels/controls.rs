@@ -101,7 +101,7 @@ fn all_open(ghost: bool) -> Session {
 }
 
 /// What holds more that is to go back, or moves what is below it when it has gone back; from below.
-const LAST: [&str; 6] = ["Plot", "False colours", "Measure", "Wipe", "Goal", "By the photo"];
+const LAST: [&str; 7] = ["Plot", "False colours", "Measure", "Wipe", "Goal", "Recover", "By the photo"];
 
 #[test]
 fn every_control_says_what_it_sets_and_goes_back() {
