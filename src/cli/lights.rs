@@ -61,7 +61,7 @@ pub fn run(args: &Args) -> Result<()> {
     let look = args.unit.over(Look { find: options, ..Look::default() });
     args.unit.check(&look)?;
     let frame = look.frame(&photo)?;
-    let found = look.find(&photo, &frame);
+    let found = look.find(&photo, &look.recovered(&photo), &frame);
     if args.json {
         stdout::json(|out| json(out, &found, look.unit))
     } else {

@@ -9,7 +9,7 @@ use crate::frame::Frame;
 use crate::look::{Gathered, Look, Search};
 use crate::photo::{self, BadPixels, Facts, Photo};
 use crate::renderer::Settings;
-use crate::scene::FindOptions;
+use crate::scene::{FindOptions, Recovered};
 
 /// A photo in which it is known what glares.
 pub struct Found<'a> {
@@ -29,6 +29,8 @@ pub struct Found<'a> {
     pub stages: Stages,
     /// What a person ought to know.
     pub warnings: Vec<String>,
+    /// How its pixels shine.
+    pub(super) recovered: Recovered,
     pub(super) settings: Settings,
 }
 
@@ -54,14 +56,18 @@ impl<'a> Found<'a> {
         let photo = photo.into();
         let frame = look.frame(&photo)?;
         let bad = stages.time("survey", || photo::survey(&photo));
-        let scene = stages.time("lights", || look.gather_knowing(&photo, &frame, search));
+        let recovered = || if look.takes_light() { look.recovered(&photo) } else { Recovered::default() };
+        let recovered = stages.time("recover", recovered);
+        let scene = stages.time("lights", || look.gather_knowing(&photo, &recovered, &frame, search));
         let mut warnings = photo.source.notes.clone();
-        let bright = |threshold| bright_light(&photo, &frame, look.find.by, threshold);
+        let bright = |threshold| bright_light(&photo, &recovered, &frame, look.find.by, threshold);
         let (settings, warning) = settings(look, &photo, &scene, bright)?;
         warnings.extend(warning);
-        let FindOptions { threshold, knee, .. } = look.find;
+        let FindOptions { threshold, knee, recover, .. } = look.find;
         let unsaid = [FindOptions::default(), FindOptions::VERSION_1];
-        if look.takes_photo() && unsaid.iter().all(|rules| look.find != FindOptions { threshold, knee, ..*rules }) {
+        if look.takes_photo()
+            && unsaid.iter().all(|rules| look.find != FindOptions { threshold, knee, recover, ..*rules })
+        {
             warnings.push(
                 "rules for lights, but for a threshold, change nothing where every pixel is a source: --sources lights looks for lights"
                     .into(),
@@ -73,7 +79,7 @@ impl<'a> Found<'a> {
         if look.strength != 0.0 && (look.veil.is_some() || !scene.is_dark()) {
             warnings.extend(panorama::seam(&photo));
         }
-        Ok(Self { look, facts: photo.facts(), photo, frame, bad, scene, stages, warnings, settings })
+        Ok(Self { look, facts: photo.facts(), photo, frame, bad, scene, stages, warnings, recovered, settings })
     }
 
     /// Lays the glare over the photo. A look of strength 0 has none and needs no computer; without a computer there is
@@ -106,10 +112,10 @@ impl<'a> Found<'a> {
 
     /// The photo with its veil, where it has one, or as it is, and black glare.
     fn without_ghosts(self, computer: Option<&mut Computer>, wanted: Wanted, watch: &impl Watch) -> Result<Done<'a>> {
-        let Self { look, photo, frame, facts, bad, scene, mut stages, mut warnings, settings: _ } = self;
+        let Self { look, photo, frame, facts, bad, scene, mut stages, mut warnings, recovered, settings: _ } = self;
         let before = if bad.nan + bad.infinite > 0 { photo::not_finite(&photo.pixels) } else { 0 };
         watch.begin(Step::Computing)?;
-        let cast = veil::cast(look, &photo, &frame, wanted.verify, computer, &mut stages)?;
+        let cast = veil::cast(look, &photo, &recovered, &frame, wanted.verify, computer, &mut stages)?;
         let dark = || photo.companion(vec![[0.0, 0.0, 0.0, 1.0]; photo.frame.window.pixels()]);
         let mut glare = wanted.glare.then(dark);
         if let (Some(cast), Some(glare)) = (&cast, &mut glare) {

@@ -36,11 +36,12 @@ impl<'a> Planned<'a> {
     /// Where the driver refuses; [`Error::NotFinite`], [`Error::PictureNotFinite`]; [`Error::Cancelled`].
     pub fn render(self, computer: &mut Computer, wanted: Wanted, watch: &impl Watch) -> Result<Done<'a>> {
         let Self { found, planning, info } = self;
-        let Found { look, photo, frame, facts, bad, scene, mut stages, mut warnings, settings } = found;
+        let Found { look, photo, frame, facts, bad, scene, mut stages, mut warnings, recovered, settings } = found;
         // What is not finite in the photo already is no fault of the glare's.
         let before = if bad.nan + bad.infinite > 0 { photo::not_finite(&photo.pixels) } else { 0 };
         watch.begin(Step::Computing)?;
-        let cast = veil::cast(look, &photo, &frame, wanted.verify, Some(computer), &mut stages)?;
+        let cast = veil::cast(look, &photo, &recovered, &frame, wanted.verify, Some(computer), &mut stages)?;
+        drop(recovered);
         let renderer = computer.renderer()?;
         renderer.field.set_timing(wanted.times);
         // Of the photo as it is: the picture takes over its memory.

@@ -5,7 +5,7 @@ use crate::frame::Frame;
 use crate::look::{Gathered, Look};
 use crate::photo::Photo;
 use crate::renderer::Settings;
-use crate::scene::{Emission, is_light};
+use crate::scene::{Emission, Recovered, is_light};
 use crate::{Error, Result};
 
 /// What the composite is told, and what to warn of. Where light is taken from the photo's lights, `bright` gives
@@ -53,13 +53,14 @@ pub fn settings(
 }
 
 /// The flux of all pixels of a photo at or above a brightness, RGB, in the photo's unit times the frame's unit of
-/// lengths squared: what they give, a negative channel none. Fireflies count here as what they are.
-pub fn bright_light(photo: &Photo, frame: &Frame, by: LightBy, threshold: f64) -> [f64; 3] {
+/// lengths squared: what they give, as they shine, a negative channel none. Fireflies count here as what they are.
+pub fn bright_light(photo: &Photo, recovered: &Recovered, frame: &Frame, by: LightBy, threshold: f64) -> [f64; 3] {
     let emission = Emission::of(photo).by(by);
     let (area, threshold) = (frame.pixel_size().powi(2), threshold as f32);
     let mut bright = [0.0; 3];
-    for pixel in &photo.pixels {
-        if is_light(emission.brightness(pixel), threshold) {
+    let shining = recovered.over(&photo.pixels);
+    for (pixel, shown) in shining.iter().zip(&photo.pixels) {
+        if is_light(emission.brightness(shown), threshold) {
             let share = f64::from(emission.share(pixel)) * area;
             for (bright, &light) in bright.iter_mut().zip(pixel) {
                 *bright += f64::from(light.max(0.0)) * share;
@@ -110,17 +111,30 @@ mod tests {
             size: DVec2::ONE,
             radiance: [flux / std::f64::consts::TAU, 0.0, 0.0],
         };
-        let (gain, enough) =
-            light_gain(bright_light(&photo, &photo.frame, LightBy::Luminance, 10.0), ghost(2.5).flux(), 2.0);
+        let (gain, enough) = light_gain(
+            bright_light(&photo, &Recovered::default(), &photo.frame, LightBy::Luminance, 10.0),
+            ghost(2.5).flux(),
+            2.0,
+        );
         assert!((gain[0] - 0.8).abs() < 1e-12 && gain[1..] == [1.0, 1.0] && enough, "{gain:?}");
-        let (gain, enough) =
-            light_gain(bright_light(&photo, &photo.frame, LightBy::Luminance, 10.0), ghost(50.0).flux(), 1.0);
+        let (gain, enough) = light_gain(
+            bright_light(&photo, &Recovered::default(), &photo.frame, LightBy::Luminance, 10.0),
+            ghost(50.0).flux(),
+            1.0,
+        );
         assert_eq!((gain, enough), ([0.0, 1.0, 1.0], false));
-        let (gain, enough) =
-            light_gain(bright_light(&photo, &photo.frame, LightBy::Luminance, f64::INFINITY), ghost(1.0).flux(), 1.0);
+        let (gain, enough) = light_gain(
+            bright_light(&photo, &Recovered::default(), &photo.frame, LightBy::Luminance, f64::INFINITY),
+            ghost(1.0).flux(),
+            1.0,
+        );
         assert_eq!((gain, enough), ([0.0, 1.0, 1.0], false));
         assert_eq!(
-            light_gain(bright_light(&photo, &photo.frame, LightBy::Luminance, 10.0), [0.0; 3], 1.0),
+            light_gain(
+                bright_light(&photo, &Recovered::default(), &photo.frame, LightBy::Luminance, 10.0),
+                [0.0; 3],
+                1.0
+            ),
             ([1.0; 3], true)
         );
     }
@@ -130,12 +144,21 @@ mod tests {
         let mut photo = Photo::new(5, 1, [0.0, 0.25, 0.5, 1.0, f32::NAN].map(|alpha| [8.0, 4.0, -2.0, alpha]).to_vec());
         // A pixel's area is 2 × 2.
         let whole = [32.0, 16.0, 0.0];
-        assert_eq!(bright_light(&photo, &photo.frame, LightBy::Luminance, 1.0), whole.map(|light: f64| 5.0 * light));
+        assert_eq!(
+            bright_light(&photo, &Recovered::default(), &photo.frame, LightBy::Luminance, 1.0),
+            whole.map(|light: f64| 5.0 * light)
+        );
         photo.source.alpha = Alpha::Straight;
-        assert_eq!(bright_light(&photo, &photo.frame, LightBy::Luminance, 1.0), whole.map(|light: f64| 1.75 * light));
-        assert_eq!(bright_light(&photo, &photo.frame, LightBy::Luminance, 2.0), whole.map(|light: f64| 1.5 * light));
+        assert_eq!(
+            bright_light(&photo, &Recovered::default(), &photo.frame, LightBy::Luminance, 1.0),
+            whole.map(|light: f64| 1.75 * light)
+        );
+        assert_eq!(
+            bright_light(&photo, &Recovered::default(), &photo.frame, LightBy::Luminance, 2.0),
+            whole.map(|light: f64| 1.5 * light)
+        );
         photo.source.primaries = Some(Primaries::ACES2065_1);
         photo.pixels.fill([0.0, 0.0, 9.0, 1.0]);
-        assert_eq!(bright_light(&photo, &photo.frame, LightBy::Luminance, 0.0), [0.0; 3]);
+        assert_eq!(bright_light(&photo, &Recovered::default(), &photo.frame, LightBy::Luminance, 0.0), [0.0; 3]);
     }
 }

@@ -40,7 +40,7 @@ impl Look {
             }
             None => LookLens::Own(scene.lens_ghosts.into()),
         };
-        let LookSection { strength, size, tint, mix, normalize, unit, fov, sources: _ } = scene.look;
+        let LookSection { strength, size, tint, mix, normalize, unit, fov, sources: _, recover } = scene.look;
         let AccuracySection { goal, allow_floor, evaluator } = scene.accuracy;
         let of_veil = scene.veil.as_ref().and_then(|veil| veil.fov);
         if let (Some(one), Some(other)) = (fov, of_veil)
@@ -49,6 +49,7 @@ impl Look {
             return Err(Error::Usage(format!("the scene says that the picture spans {one}° and {other}°")));
         }
         let adds = mix == Some(Mix::Add);
+        let by_version = scene.find.options(scene.version);
         let (veil, of_lens) = match scene.veil {
             None if scene.no_veil => (None, None),
             None if lists && scene.version == Version::Two => (None, None),
@@ -71,7 +72,7 @@ impl Look {
             tint: tint.unwrap_or([1.0; 3]),
             lights,
             ghosts: scene.ghosts.into(),
-            find: scene.find.options(scene.version),
+            find: FindOptions { recover: recover.unwrap_or(by_version.recover), ..by_version },
             strength: strength.unwrap_or(1.0),
             veil,
             mix: mix.unwrap_or_default(),
@@ -112,7 +113,7 @@ impl Look {
         let add = matches!(lights, LookLights::FoundAnd(_));
         let sources = if matches!(lights, LookLights::Photo(_)) { Sources::Photo } else { Sources::Lights };
         let Accuracy { goal, allow_floor, degree, period, evaluator } = *accuracy;
-        let FindOptions { by, threshold, merge, max_lights, beyond, firefly_limit, knee } = *find;
+        let FindOptions { by, threshold, merge, max_lights, beyond, firefly_limit, knee, recover } = *find;
         SceneFile {
             version: Version::Two,
             description: description.clone(),
@@ -130,6 +131,7 @@ impl Look {
                 unit: Some(*unit),
                 fov: if veil.is_some() { None } else { *fov },
                 sources: Some(sources),
+                recover: Some(recover),
             },
             find: FindSection {
                 by: Some(by),
@@ -158,7 +160,7 @@ mod tests {
     use super::*;
     use crate::choices::{Beyond, Evaluator, LightBy, Normalize};
     use crate::psf::{Name, Parameters};
-    use crate::scene::{Ghost, Goal, Lens, Light, presets, read_scene, write_scene};
+    use crate::scene::{Ghost, Goal, Lens, Light, Recover, presets, read_scene, write_scene};
     use crate::series::Bell;
 
     fn through_a_file(look: &Look) -> Look {
@@ -192,6 +194,7 @@ mod tests {
                 beyond: Beyond::Drop,
                 firefly_limit: 20.0,
                 knee: 0.5,
+                recover: Recover::Stops(3.5),
             },
             strength: 1.7,
             veil: None,

@@ -8,7 +8,7 @@ use crate::frame::Frame;
 use crate::photo::Photo;
 use crate::problem::{Images, Problem};
 use crate::raster::Raster;
-use crate::scene::{self, Emission, FindOptions, Found, Ghost, Knee, Lens, Light};
+use crate::scene::{self, Emission, FindOptions, Found, Ghost, Knee, Lens, Light, Recovered, Recovery};
 
 /// What glares in one photo.
 pub struct Gathered {
@@ -22,6 +22,8 @@ pub struct Gathered {
     pub ghosts: Arc<[Ghost]>,
     /// Ghosts of all pixels, where they make some.
     pub images: Option<Arc<Images>>,
+    /// What became of clipped highlights, if there are any.
+    pub recovery: Option<Recovery>,
 }
 
 impl Gathered {
@@ -65,23 +67,46 @@ impl Look {
     /// What glares in a photo, on its frame as [`Look::frame`] gives it. It is searched for lights where none are listed, and
     /// for the threshold where light is taken from it.
     pub fn gather(&self, photo: &Photo, frame: &Frame) -> Gathered {
-        self.gather_knowing(photo, frame, None)
+        self.gather_knowing(photo, &self.recovered(photo), frame, None)
     }
 
-    /// The same for a photo that may have been searched already; by other rules than the look's it is searched again.
-    pub fn gather_knowing(&self, photo: &Photo, frame: &Frame, search: Option<Search>) -> Gathered {
+    /// The same for a photo of which it is known how it shines, as [`Look::recovered`] tells, and that may have been searched
+    /// already; by other rules than the look's it is searched again.
+    pub fn gather_knowing(
+        &self,
+        photo: &Photo,
+        recovered: &Recovered,
+        frame: &Frame,
+        search: Option<Search>,
+    ) -> Gathered {
         let fits = |search: &Search| search.options == self.find && search.unit == frame.unit;
         let known = search.filter(fits).map(|search| search.found);
-        let found = self.searches().then(|| known.unwrap_or_else(|| self.find(photo, frame)));
-        Gathered { images: self.images(|| self.raster(photo, frame)), ..self.gather_from(found) }
+        let found = self.searches().then(|| known.unwrap_or_else(|| self.find(photo, recovered, frame)));
+        let images = self.images(|| self.raster(photo, recovered, frame));
+        Gathered { images, recovery: recovered.told.clone(), ..self.gather_from(found) }
     }
 
-    /// What of a photo shines where every pixel is a source, on its frame as [`Look::frame`] gives it.
+    /// How the pixels of a photo shine, of which all that glares is made: as they are shown, but for those that are clipped.
+    ///
+    /// # Panics
+    /// For a photo without its pixels.
+    pub fn recovered(&self, photo: &Photo) -> Recovered {
+        let (emission, is_for_display) = (Emission::of(photo), photo.source.display_referred);
+        scene::recover(&photo.pixels, &photo.frame, emission, is_for_display, self.find.recover)
+    }
+
+    /// Whether it matters how the pixels of a photo shine.
+    pub fn takes_light(&self) -> bool {
+        self.veil.is_some() || self.searches() || self.takes_photo()
+    }
+
+    /// What of a photo shines where every pixel is a source, on its frame as [`Look::frame`] gives it; `recovered` is how its
+    /// pixels shine, as [`Look::recovered`] tells.
     ///
     /// # Panics
     /// For a frame of other pixels than the photo's.
-    pub fn raster(&self, photo: &Photo, frame: &Frame) -> Arc<Raster> {
-        let given = Emission::of(photo).given(&photo.pixels);
+    pub fn raster(&self, photo: &Photo, recovered: &Recovered, frame: &Frame) -> Arc<Raster> {
+        let given = Emission::of(photo).given(recovered.over(&photo.pixels));
         let knee = self.find.knee();
         let shining = if knee == Knee::NONE { given } else { knee.shining(&given).into() };
         Raster::new(&shining, *frame).expect("a photo has the pixels of its frame")
@@ -97,7 +122,7 @@ impl Look {
     pub fn gather_from(&self, found: Option<Found>) -> Gathered {
         let lights = self.lights(found.as_ref().map_or(&[], |found| &found.lights)).into_owned();
         let lens = (!lights.is_empty() || self.takes_photo()).then(|| self.lens());
-        Gathered { ghosts: self.ghosts(&lights).into(), found, lights, lens, images: None }
+        Gathered { ghosts: self.ghosts(&lights).into(), found, lights, lens, images: None, recovery: None }
     }
 
     /// Whether a photo is to be searched: for lights, or for the threshold that tells them from the rest.
@@ -115,9 +140,11 @@ impl Look {
         self.strength != 0.0 && !(self.lens_ghosts().is_empty() && self.ghosts.is_empty())
     }
 
-    /// Searches a photo for lights, on its frame as [`Look::frame`] gives it.
-    pub fn find(&self, photo: &Photo, frame: &Frame) -> Found {
-        scene::find(&photo.pixels, frame, Emission::of(photo), &self.find)
+    /// Searches a photo for lights, on its frame as [`Look::frame`] gives it; `recovered` is how its pixels shine, as
+    /// [`Look::recovered`] tells.
+    pub fn find(&self, photo: &Photo, recovered: &Recovered, frame: &Frame) -> Found {
+        let shining = recovered.over(&photo.pixels);
+        scene::find_shining(&photo.pixels, shining, frame, Emission::of(photo), &self.find)
     }
 
     /// The ghosts that the lens makes of `lights`, then those that no light makes, in the look's size and tint.

@@ -82,7 +82,7 @@ fn options(look: &Look) -> Result<Vec<String>> {
     options.changed("--unit", *unit, default.unit, name);
     options.given("--fov", *fov, |fov| fov.to_string());
     options.changed("--axis", *axis, default.axis, pair);
-    let FindOptions { by, threshold, merge, max_lights, beyond, firefly_limit, knee } = *find;
+    let FindOptions { by, threshold, merge, max_lights, beyond, firefly_limit, knee, recover } = *find;
     options.changed("--by", by, default.find.by, name);
     options.given("--threshold", threshold, |x| x.to_string());
     options.changed("--merge", merge, default.find.merge, |x| x.to_string());
@@ -93,6 +93,7 @@ fn options(look: &Look) -> Result<Vec<String>> {
     options.changed("--beyond", beyond, default.find.beyond, name);
     options.changed("--firefly-limit", firefly_limit, default.find.firefly_limit, |x| x.to_string());
     options.changed("--knee", knee, default.find.knee, |x| x.to_string());
+    options.changed("--recover", recover, default.find.recover, |recover| recover.to_string());
     options.changed("--strength", *strength, default.strength, |x| x.to_string());
     options.changed("--size", *size, default.size, |x| x.to_string());
     options.changed("--tint", *tint, default.tint, |[r, g, b]| format!("{r},{g},{b}"));

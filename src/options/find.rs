@@ -2,7 +2,7 @@
 
 use super::numbers::{factor, not_negative};
 use crate::choices::{Beyond, LightBy};
-use crate::scene::FindOptions;
+use crate::scene::{FindOptions, Recover};
 
 /// What counts as a light in a photo.
 #[derive(Debug, Clone, clap::Args)]
@@ -41,6 +41,12 @@ pub struct FindArgs {
     /// it, and so far above it all that is above it shines [default: 0]
     #[arg(long, value_name = "K", allow_hyphen_values = true, value_parser = not_negative)]
     knee: Option<f64>,
+
+    /// How many stops brighter than they are shown clipped highlights shine, 0 to 20: as lights, as pixels of the whole photo and in
+    /// a veil, while the picture keeps what it shows. `auto` guesses it for pictures for displays, as 8-bit files are, and leaves
+    /// others alone; `none` leaves all alone [default: auto]
+    #[arg(long, value_name = "STOPS", allow_hyphen_values = true)]
+    recover: Option<Recover>,
 }
 
 impl FindArgs {
@@ -59,6 +65,7 @@ impl FindArgs {
             beyond: self.beyond.unwrap_or(set.beyond),
             firefly_limit: self.firefly_limit.unwrap_or(set.firefly_limit),
             knee: self.knee.unwrap_or(set.knee),
+            recover: self.recover.unwrap_or(set.recover),
         }
     }
 }

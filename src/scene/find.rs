@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use super::Knee;
 use super::Light;
+use super::Recover;
 use super::emission::Emission;
 use super::lit::Lit;
 use super::nearest::Nearest;
@@ -41,6 +42,8 @@ pub struct FindOptions {
     /// Where every pixel is a source, and there is a threshold: how far below and above it pixels begin to shine and shine in full;
     /// see [`Knee`].
     pub knee: f64,
+    /// How much brighter than it is shown what is clipped shines, as a light, as a pixel of the whole photo or in a veil.
+    pub recover: Recover,
 }
 
 impl FindOptions {
@@ -53,6 +56,7 @@ impl FindOptions {
         beyond: Beyond::Drop,
         firefly_limit: 0.0,
         knee: 0.0,
+        recover: Recover::None,
     };
 
     /// What of each pixel shines where every pixel is a source.
@@ -77,6 +81,7 @@ impl Default for FindOptions {
             beyond: Beyond::Join,
             firefly_limit: 1000.0,
             knee: 0.0,
+            recover: Recover::Auto,
         }
     }
 }
@@ -140,13 +145,32 @@ impl Found {
 ///
 /// If there are not as many pixels as `frame.window` holds.
 pub fn find(pixels: &[[f32; 4]], frame: &Frame, emission: impl Into<Emission>, options: &FindOptions) -> Found {
-    assert_eq!(pixels.len(), frame.window.pixels(), "the pixels do not fill the frame's window");
+    find_shining(pixels, pixels, frame, emission, options)
+}
+
+/// The same, where pixels shine otherwise than they are shown: what is light is told by those that are shown, and what flux it has by
+/// those that shine.
+///
+/// # Panics
+///
+/// If there are not as many pixels of either as `frame.window` holds.
+pub fn find_shining(
+    shown: &[[f32; 4]],
+    shining: &[[f32; 4]],
+    frame: &Frame,
+    emission: impl Into<Emission>,
+    options: &FindOptions,
+) -> Found {
+    let count = frame.window.pixels();
+    assert!(shown.len() == count && shining.len() == count, "the pixels do not fill the frame's window");
     let emission = emission.into().by(options.by);
-    let lit = Lit::new(pixels, frame.window.width as usize, emission, options.firefly_limit);
+    let lit = Lit::new(shown, frame.window.width as usize, emission, options.firefly_limit);
     let (threshold, rule) = match options.threshold {
         Some(given) => (given, Rule::Given),
         None => threshold::automatic(&lit),
     };
+    let peak = lit.peak();
+    let lit = lit.shining(shining);
     let mut found = regions(&lit, threshold as f32, frame.pixel_aspect);
     let fireflies = lit.fireflies(threshold as f32);
     let regions = found.len();
@@ -155,7 +179,7 @@ pub fn find(pixels: &[[f32; 4]], frame: &Frame, emission: impl Into<Emission>, o
     // No two pixels are farther apart than a diagonal.
     let diagonal = frame.pixel_aspect * f64::from(frame.window.width) + f64::from(frame.window.height);
     let radius = (options.merge / frame.pixel_size()).min(diagonal);
-    let mut lights = merge(found, radius, pixels.len() as f64 * frame.pixel_aspect);
+    let mut lights = merge(found, radius, count as f64 * frame.pixel_aspect);
     lights.sort_by(brightest_first);
     let beyond = lights.split_off(options.max_lights.min(lights.len()));
     let beyond_share = beyond.iter().fold(0.0, |sum, region| sum + region.weight / total);
@@ -182,7 +206,7 @@ pub fn find(pixels: &[[f32; 4]], frame: &Frame, emission: impl Into<Emission>, o
         joined_share,
         fireflies: fireflies.len(),
         first_firefly: fireflies.first().map(|&(i, j)| (frame.window.x + i as i32, frame.window.y + j as i32)),
-        peak: lit.peak().into(),
+        peak: peak.into(),
     }
 }
 

@@ -58,6 +58,11 @@ impl<'a> Lit<'a> {
         lit
     }
 
+    /// The same with other light in its pixels; a firefly stays one, and the peak is that of before.
+    pub fn shining(self, pixels: &'a [[f32; 4]]) -> Self {
+        Self { pixels, ..self }
+    }
+
     fn see(&self, rows: Range<usize>, limit: f32) -> Seen {
         let mut seen = Seen::default();
         for row in rows {

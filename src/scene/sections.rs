@@ -3,9 +3,9 @@
 use serde::{Deserialize, Deserializer, Serialize};
 use toml::Spanned;
 
-use super::FindOptions;
 use super::bells::Fault;
 use super::number::{Allowed, IsFactor, IsField, IsFraction, IsNotNegative, IsPositive, NotNegative, Number, plain};
+use super::{FindOptions, Recover};
 use crate::choices::{Beyond, Evaluator, LengthUnit, LightBy, Mix, Normalize, Sources};
 
 /// What a scene file means by what it does not say.
@@ -56,6 +56,9 @@ pub struct LookSection {
     /// What in the photo makes ghosts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sources: Option<Sources>,
+    /// What becomes of clipped highlights where they make glare.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub recover: Option<Recover>,
 }
 
 /// `[find]`; see [`super::FindOptions`].
@@ -176,6 +179,8 @@ impl FindSection {
             beyond: self.beyond.unwrap_or(default.beyond),
             firefly_limit: self.firefly_limit.unwrap_or(default.firefly_limit),
             knee: self.knee.unwrap_or(default.knee),
+            // What shines brighter than it is shown stands in [`LookSection`].
+            recover: default.recover,
         }
     }
 }

@@ -10,6 +10,7 @@ mod strips;
 
 use std::path::PathBuf;
 use std::rc::Rc;
+use std::sync::Arc;
 use std::time::Duration;
 
 use egui::{CentralPanel, Color32, Key, Modifiers, Panel, RawInput, Ui};
@@ -312,7 +313,13 @@ impl App {
         }
         if self.search.is_none() && document.wants_search() && !document.is_asleep() {
             let (look, photo, frame) = (document.look.clone(), document.photo.clone(), document.whole_frame());
-            let search = move || Search { options: look.find, unit: frame.unit, found: look.find(&photo, &frame) };
+            let recovered = document.recovered.clone();
+            let search = move || {
+                let known = recovered.by == look.find.recover;
+                let recovered = if known { recovered } else { Arc::new(look.recovered(&photo)) };
+                let found = look.find(&photo, &recovered, &frame);
+                Search { options: look.find, unit: frame.unit, found }
+            };
             let task = Task::start("search", &self.wake, search);
             match task {
                 Ok(task) => self.search = Some(Searching { document: *number, task }),

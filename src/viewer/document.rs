@@ -15,7 +15,7 @@ use crate::frame::{Frame, Window};
 use crate::look::Search;
 use crate::photo::{self, Photo, ReadOptions};
 use crate::printable;
-use crate::scene::{FindOptions, Found, Ghost, Light};
+use crate::scene::{FindOptions, Found, Ghost, Light, Recovered};
 
 /// The most pixels that are computed live: one tile of the renderer's, 4 Mpx.
 ///
@@ -35,6 +35,8 @@ pub struct Document {
     pub shrunk: u32,
     /// The means, where they are not the file's own pixels.
     pub(super) means: Option<Arc<Vec<[f32; 4]>>>,
+    /// How the file's pixels shine, by the look that it was opened with.
+    pub(super) recovered: Arc<Recovered>,
     /// From its primaries to Rec.709's, where they differ.
     pub gamut: Option<DMat3>,
     /// What was found in it, and by which rules.
@@ -88,18 +90,20 @@ impl Document {
     pub fn new(path: &Path, photo: Photo, look: Look) -> Self {
         let shrunk = side(photo.frame.window, LIVE_PIXELS);
         let whole = look.frame(&photo).unwrap_or(photo.frame);
+        let recovered = look.recovered(&photo);
         let (frame, means) = match shrunk {
             1 => (photo.frame, None),
-            side => shrink(&photo, side),
+            side => shrink(&photo.frame, &photo.pixels, side),
         };
         let means = means.map(Arc::new);
         Self {
             path: path.to_owned(),
             gamut: photo.to_rec709(),
-            found: look.find(&photo, &whole),
+            found: look.find(&photo, &recovered, &whole),
             searched: look.find,
             searched_in: whole.unit,
             found_in: whole.unit,
+            recovered: Arc::new(recovered),
             photo: Arc::new(photo),
             frame: frame.in_units_of(whole.unit),
             shrunk,
@@ -129,13 +133,15 @@ impl Document {
 
     /// The bytes of its pixels.
     pub(super) fn bytes(&self) -> usize {
-        size_of::<[f32; 4]>() * (self.photo.pixels.len() + self.means.as_ref().map_or(0, |means| means.len()))
+        let shown = self.photo.pixels.len() + self.means.as_ref().map_or(0, |means| means.len());
+        size_of::<[f32; 4]>() * shown + self.recovered.bytes()
     }
 
     /// Lets go of the pixels, and of all else of the file that is not needed to show what is set.
     pub(super) fn sleep(&mut self) {
         self.photo = Arc::new(self.photo.without_pixels());
         self.means = None;
+        self.recovered = Arc::default();
     }
 
     /// Whether it has let go of its pixels.
@@ -146,7 +152,7 @@ impl Document {
     /// Takes the pixels of the same file, read again, and what was found in it; all that is set stays.
     pub(super) fn wake(&mut self, fresh: Self) {
         (self.photo, self.means, self.frame, self.shrunk) = (fresh.photo, fresh.means, fresh.frame, fresh.shrunk);
-        self.gamut = fresh.gamut;
+        (self.gamut, self.recovered) = (fresh.gamut, fresh.recovered);
         self.set_found(Search { options: fresh.searched, unit: fresh.searched_in, found: fresh.found });
     }
 
@@ -196,6 +202,14 @@ impl Document {
     pub fn known_look(&self) -> Look {
         let find = if self.look.searches() { self.searched } else { self.look.find };
         Look { find, ..self.look.clone() }
+    }
+
+    /// How the file's pixels shine by a look.
+    pub(super) fn recovered(&self, look: &Look) -> Arc<Recovered> {
+        if self.recovered.by == look.find.recover {
+            return self.recovered.clone();
+        }
+        Arc::new(look.recovered(&self.photo))
     }
 
     /// Whether the photo has to be searched anew.
@@ -321,11 +335,11 @@ fn shrunk(window: Window, side: u32) -> Window {
 }
 
 /// The means of squares of pixels; what does not fill a square at the right and at the bottom is left out.
-fn shrink(photo: &Photo, side: u32) -> (Frame, Option<Vec<[f32; 4]>>) {
-    let from = photo.frame.window;
+pub(super) fn shrink(frame: &Frame, pixels: &[[f32; 4]], side: u32) -> (Frame, Option<Vec<[f32; 4]>>) {
+    let from = frame.window;
     let to = shrunk(from, side);
-    let [width, height] = [photo.width(), photo.height()].map(|whole| (whole / side).max(1));
-    let frame = photo.frame.resized(width, height).with_window(to);
+    let [width, height] = [frame.width, frame.height].map(|whole| (whole / side).max(1));
+    let frame = frame.resized(width, height).with_window(to);
     let stride = from.width as usize;
     let (wide, tall) = (side.min(from.width) as usize, side.min(from.height) as usize);
     let weight = 1.0 / (wide * tall) as f32;
@@ -333,7 +347,7 @@ fn shrink(photo: &Photo, side: u32) -> (Frame, Option<Vec<[f32; 4]>>) {
         let mut sum = [0.0f32; 4];
         for line in 0..tall {
             let at = (row * side as usize + line) * stride + column * side as usize;
-            for pixel in &photo.pixels[at..at + wide] {
+            for pixel in &pixels[at..at + wide] {
                 for (sum, value) in sum.iter_mut().zip(pixel) {
                     *sum += value * weight;
                 }
@@ -357,7 +371,7 @@ mod tests {
         let pixels = (0..12 * 6).map(|i| [(i % 12) as f32, (i / 12) as f32, 1.0, 1.0]).collect();
         let photo = Photo::new(12, 6, pixels);
         assert_eq!((side(photo.frame.window, 72), side(photo.frame.window, 71)), (1, 2));
-        let (frame, pixels) = shrink(&photo, 3);
+        let (frame, pixels) = shrink(&photo.frame, &photo.pixels, 3);
         let pixels = pixels.unwrap();
         assert_eq!((frame, pixels.len()), (Frame::full(4, 2), 8));
         assert!(pixels[1].iter().zip([4.0, 1.0, 1.0, 1.0]).all(|(got, want)| (got - want).abs() < 1e-5), "{pixels:?}");
@@ -365,7 +379,7 @@ mod tests {
 
     #[test]
     fn a_strip_is_shrunk_without_vanishing() {
-        let (frame, pixels) = shrink(&Photo::new(9, 1, vec![[2.0; 4]; 9]), 4);
+        let (frame, pixels) = shrink(&Frame::full(9, 1), &[[2.0; 4]; 9], 4);
         let pixels = pixels.unwrap();
         assert_eq!((frame.window.width, frame.window.height, pixels.len()), (2, 1, 2));
         assert!(pixels.iter().flatten().all(|value| (value - 2.0).abs() < 1e-6));
@@ -395,7 +409,7 @@ mod tests {
         assert_eq!(after.flux, before.flux.map(|flux| 4.0 * flux));
         assert_eq!((document.place(after.position), document.wants_search()), (place, true));
         let (look, frame) = (document.look.clone(), document.whole_frame());
-        let found = look.find(&document.photo, &frame);
+        let found = look.find(&document.photo, &document.recovered, &frame);
         document.set_found(Search { options: look.find, unit: frame.unit, found });
         assert!((document.found.lights[0].position - after.position).length() < 1e-12 && !document.wants_search());
         document.set_look(by_height);

@@ -21,7 +21,7 @@ use crate::look::Gathered;
 use crate::plan::Plan;
 use crate::raster::Raster;
 use crate::renderer::{Live, Settings, View};
-use crate::scene::{Goal, Knee};
+use crate::scene::{Goal, Knee, Recover, Recovered, Recovery};
 use crate::{Error, Result};
 
 /// The tolerance of a preview, unless the look's own is coarser: half a code of an 8-bit display is 2e-3 of white.
@@ -69,9 +69,11 @@ struct Made {
     frame: Option<Frame>,
     picture: Option<(Settings, Shows)>,
     /// The light of the photo's bright pixels, for a threshold of some brightness and a unit of lengths.
-    bright: Option<((LightBy, f64, f64), [f64; 3])>,
+    bright: Option<((LightBy, f64, f64, Recover), [f64; 3])>,
     /// The light of all pixels, once it was asked for, in the unit of its frame.
-    raster: Option<(Knee, Arc<Raster>)>,
+    raster: Option<((Knee, Recover), Arc<Raster>)>,
+    /// How the photo's pixels shine.
+    recovered: Option<Arc<Recovered>>,
     /// The constant term of the spectrum that is there, once it was asked for.
     constant: Option<[f64; 3]>,
     /// Whether that picture was drawn; a view can often do without.
@@ -83,11 +85,17 @@ struct Made {
 
 impl Made {
     /// The light of all pixels of the document's photo as a look has it, on a frame.
-    fn raster(&mut self, document: &Document, look: &Look, frame: &Frame) -> Arc<Raster> {
-        let knee = look.find.knee();
-        let made = self.raster.take().filter(|(made, raster)| *made == knee && raster.frame() == *frame);
-        let made = made.unwrap_or_else(|| (knee, look.raster(&document.photo, frame)));
+    fn raster(&mut self, document: &Document, recovered: &Recovered, look: &Look, frame: &Frame) -> Arc<Raster> {
+        let by = (look.find.knee(), recovered.by);
+        let made = self.raster.take().filter(|(made, raster)| *made == by && raster.frame() == *frame);
+        let made = made.unwrap_or_else(|| (by, look.raster(&document.photo, recovered, frame)));
         self.raster.insert(made).1.clone()
+    }
+
+    /// How the pixels of the document's photo shine by a look.
+    fn recovered(&mut self, document: &Document, look: &Look) -> Arc<Recovered> {
+        let made = self.recovered.take().filter(|made| made.by == look.find.recover);
+        self.recovered.insert(made.unwrap_or_else(|| document.recovered(look))).clone()
     }
 }
 
@@ -180,18 +188,20 @@ impl Stage {
         let whole = look.frame(&document.photo)?;
         // A preview is no other veil.
         let (known, frame) = (document.known_look(), document.frame.in_units_of(whole.unit));
-        self.veiling.ask(number, document, frame, &known, shows == Shows::Glare)?;
+        let recovered = self.made.recovered(document, &known);
+        self.veiling.ask(number, document, &recovered, frame, &known, shows == Shows::Glare)?;
         if work >= Work::Ghosts {
-            let images = look.images(|| self.made.raster(document, look, &whole));
-            self.made.scene = Some(Gathered { images, ..look.gather_from(Some(document.found.clone())) });
+            let images = look.images(|| self.made.raster(document, &recovered, look, &whole));
+            let recovery = recovered.told.clone();
+            self.made.scene = Some(Gathered { images, recovery, ..look.gather_from(Some(document.found.clone())) });
         }
         let Some(scene) = &self.made.scene else { return Ok(()) };
         let (bright, by) = (&mut self.made.bright, look.find.by);
         let (mut settings, _) = job::settings(look, &document.photo, scene, |threshold| match *bright {
-            Some((known, light)) if known == (by, threshold, whole.unit) => light,
+            Some((known, light)) if known == (by, threshold, whole.unit, recovered.by) => light,
             _ => {
-                let light = job::bright_light(&document.photo, &whole, by, threshold);
-                bright.insert(((by, threshold, whole.unit), light)).1
+                let light = job::bright_light(&document.photo, &recovered, &whole, by, threshold);
+                bright.insert(((by, threshold, whole.unit, recovered.by), light)).1
             }
         })?;
         if work >= Work::Plan {
@@ -323,6 +333,11 @@ impl Stage {
     /// The plan of the picture on the device.
     pub fn plan(&self) -> Option<&Plan> {
         self.plan.as_ref()
+    }
+
+    /// What became of clipped highlights in the picture on the device, if there are any.
+    pub fn recovery(&self) -> Option<&Recovery> {
+        self.made.scene.as_ref()?.recovery.as_ref()
     }
 
     /// Whether the picture on the device is coarser than its look asks for.

@@ -8,14 +8,14 @@ use std::time::Instant;
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use super::document::Document;
+use super::document::{Document, shrink};
 use super::loader::Wake;
 use super::model::{Look, same_veil};
 use super::task::{State, Task};
 use crate::frame::Frame;
 use crate::job::{Ledger, MOST_LAYERS, VeilLayers, VeilSums};
 use crate::renderer::Picture;
-use crate::scene::Emission;
+use crate::scene::{Emission, Recovered};
 use crate::{Error, Result};
 
 /// The veil of one document at a time.
@@ -136,12 +136,20 @@ impl Veiling {
         }
     }
 
-    /// Asks for the veil of a look on a document's pixels, which lie on `frame`, and begins what is missing unless something is
+    /// Asks for the veil of a look on a document's pixels, which lie on `frame` and shine as they are `recovered`, and begins what is missing unless something is
     /// being summed; `alone` is how the device is to have it.
     ///
     /// # Errors
     /// [`Error::Usage`] where the look contradicts itself or the photo; what was asked for before stays.
-    pub fn ask(&mut self, number: u64, document: &Document, frame: Frame, look: &Look, alone: bool) -> Result<()> {
+    pub fn ask(
+        &mut self,
+        number: u64,
+        document: &Document,
+        recovered: &Arc<Recovered>,
+        frame: Frame,
+        look: &Look,
+        alone: bool,
+    ) -> Result<()> {
         let same =
             self.look.as_ref().is_some_and(|(of, on, known)| (*of, *on) == (number, frame) && same_veil(known, look));
         if !same {
@@ -157,7 +165,7 @@ impl Veiling {
             self.asked = sums.map(|(sums, weights)| Asked { sums, weights, strength: look.strength, adds });
             self.weigh();
         }
-        self.begin(number, document, alone);
+        self.begin(number, document, recovered, alone);
         Ok(())
     }
 
@@ -170,7 +178,7 @@ impl Veiling {
         }
     }
 
-    fn begin(&mut self, number: u64, document: &Document, alone: bool) {
+    fn begin(&mut self, number: u64, document: &Document, recovered: &Arc<Recovered>, alone: bool) {
         let Some(Asked { sums, adds, weights, .. }) = &self.asked else { return };
         let known = self.known.as_ref().is_some_and(|known| known.sums == *sums);
         let refused = self.refused.as_ref().is_some_and(|(refused, _)| refused == sums);
@@ -182,9 +190,17 @@ impl Veiling {
             self.pool = ThreadPoolBuilder::new().build().ok().map(Arc::new);
         }
         let (pool, asked, alone) = (self.pool.clone(), sums.clone(), alone || *adds);
-        let (photo, means) = (document.photo.clone(), document.means.clone());
+        let (photo, means, recovered) = (document.photo.clone(), document.means.clone(), recovered.clone());
+        let side = document.shrunk;
         let work = move || {
-            let work = || sum(&asked, Emission::of(&photo), means.as_deref().unwrap_or(&photo.pixels), alone);
+            let work = || {
+                let shown = means.as_deref().unwrap_or(&photo.pixels);
+                // Of means, those of the file's pixels as they shine.
+                let shrunk = means.as_ref().filter(|_| recovered.is_other());
+                let shrunk = shrunk.and_then(|_| shrink(&photo.frame, recovered.over(&photo.pixels), side).1);
+                let shining = shrunk.as_deref().unwrap_or_else(|| recovered.over(shown));
+                sum(&asked, Emission::of(&photo), shown, shining, alone)
+            };
             match pool {
                 Some(pool) => pool.install(work),
                 None => work(),
@@ -278,9 +294,9 @@ impl Veiling {
 }
 
 /// All of it, on the thread of its own.
-fn sum(sums: &VeilSums, emission: Emission, pixels: &[[f32; 4]], alone: bool) -> Result<Summed> {
+fn sum(sums: &VeilSums, emission: Emission, shown: &[[f32; 4]], shining: &[[f32; 4]], alone: bool) -> Result<Summed> {
     let started = Instant::now();
-    let layers = sums.compute(emission, pixels)?;
-    let laid = Laid::new(&layers, pixels, alone);
+    let layers = sums.compute(emission, shining)?;
+    let laid = Laid::new(&layers, shown, alone);
     Ok(Summed { layers, laid, milliseconds: started.elapsed().as_secs_f64() * 1e3 })
 }

@@ -11,7 +11,7 @@ use vglare::gpu::Backend;
 use vglare::job::{Computer, Found, Known, Stages, Unwatched, Wanted};
 use vglare::look::{Look, LookLens, LookLights};
 use vglare::photo::{self, Photo};
-use vglare::scene::{FindOptions, presets, read_scene, write_scene};
+use vglare::scene::{FindOptions, Recover, presets, read_scene, write_scene};
 
 use crate::support::on_device;
 
@@ -135,8 +135,8 @@ fn an_old_look_that_is_written_anew_is_the_same() {
 fn what_a_file_without_a_version_does_not_say_is_as_it_was() {
     let folder = tempfile::tempdir().expect("a folder");
     let look = read(&text(folder.path(), ""));
-    let FindOptions { by, threshold, merge, max_lights, beyond, firefly_limit, knee } = look.find;
-    assert_eq!((by, beyond), (LightBy::Luminance, Beyond::Drop));
+    let FindOptions { by, threshold, merge, max_lights, beyond, firefly_limit, knee, recover } = look.find;
+    assert_eq!((by, beyond, recover), (LightBy::Luminance, Beyond::Drop, Recover::None));
     assert_eq!((threshold, merge, max_lights, firefly_limit, knee), (None, 0.02, 64, 0.0, 0.0));
     assert_eq!((look.lens, look.lights), (LookLens::preset("v1/classic-prime").expect("a lens"), LookLights::Found));
     assert_eq!((look.unit, look.veil, look.axis), (LengthUnit::Height, None, DVec2::ZERO));

@@ -251,7 +251,7 @@ mod tests {
     use crate::choices::{Beyond, Evaluator, LengthUnit, LightBy, Mix, Normalize};
     use crate::look::{Accuracy, LookLens, LookLights};
     use crate::options::command_line;
-    use crate::scene::{FindOptions, Goal, Light, presets, write_scene};
+    use crate::scene::{FindOptions, Goal, Light, Recover, presets, write_scene};
 
     #[derive(clap::Parser)]
     struct Cli {
@@ -290,6 +290,7 @@ mod tests {
                 beyond: Beyond::Drop,
                 firefly_limit: 0.0,
                 knee: 0.25,
+                recover: Recover::Stops(4.5),
             },
             strength: 1e9,
             veil: None,
@@ -348,6 +349,7 @@ mod tests {
             ("max_lights", look.find.max_lights.to_string()),
             ("firefly_limit", look.find.firefly_limit.to_string()),
             ("knee", look.find.knee.to_string()),
+            ("recover", look.find.recover.to_string()),
             ("strength", look.strength.to_string()),
             ("size", look.size.to_string()),
             ("tint", look.tint.map(|part| part.to_string()).join(",")),
@@ -423,7 +425,7 @@ mod tests {
         let line = format!("vglare apply 'my night.exr' -o \"it's.png\" --scene {}", path.display());
         assert_eq!(look(&line), changed());
         let given = "--preset classic-prime --axis 0,0 --size 1 --tint 1,1,1 --by brightest --threshold 2 --merge 0.02 \
-                     --max-lights 4096 --beyond join --firefly-limit 1000 --knee 0 --strength 1 --mix add --normalize none --tolerance 0.001 --degree 1,1 \
+                     --max-lights 4096 --beyond join --firefly-limit 1000 --knee 0 --recover auto --strength 1 --mix add --normalize none --tolerance 0.001 --degree 1,1 \
                      --period 3,3 --evaluator grid";
         let expected = Look {
             lights: LookLights::Found,

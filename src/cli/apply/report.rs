@@ -13,7 +13,7 @@ use crate::job::{Computed, Done, Veiled};
 use crate::look::{Gathered, Look};
 use crate::photo::{BadKind, Facts};
 use crate::plan::Plan;
-use crate::scene::{Goal, Light};
+use crate::scene::{Goal, Light, Recover, Recovery};
 
 /// As JSON, one object.
 #[derive(Serialize)]
@@ -29,6 +29,7 @@ pub struct Report<'a> {
     tint: [f64; 3],
     normalize: Normalize,
     mix: Mix,
+    recover: RecoverReport,
     veil: Option<&'a Veiled>,
     plan: Option<&'a Plan>,
     cost: Option<CostReport<'a>>,
@@ -52,6 +53,14 @@ struct PhotoReport {
     /// Width of a pixel over its height.
     pixel_aspect: f64,
     bad_pixels: BadReport,
+}
+
+/// What was to become of clipped highlights, and what did.
+#[derive(Serialize)]
+struct RecoverReport {
+    asked: Recover,
+    #[serde(flatten)]
+    done: Recovery,
 }
 
 /// What lengths are counted in, and what that is in heights of a pixel.
@@ -134,7 +143,7 @@ impl<'a> Report<'a> {
             tint,
             lights: _,
             ghosts: _,
-            find: _,
+            find,
             strength,
             veil: _,
             mix,
@@ -154,6 +163,7 @@ impl<'a> Report<'a> {
             tint,
             normalize,
             mix,
+            recover: RecoverReport { asked: find.recover, done: work.scene.recovery.clone().unwrap_or_default() },
             veil: work.veiled.as_ref(),
             plan: computed.map(|computed| &computed.planning.plan),
             cost: computed.map(|computed| cost_report(computed, accuracy.goal)),

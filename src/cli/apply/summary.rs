@@ -24,6 +24,7 @@ pub fn print(job: &Job<'_, Done<'_>>) -> Result<()> {
     stdout::print(|out| {
         about_photo(out, job)?;
         about_unit(out, &job.work)?;
+        about_clipped(out, &job.work.scene)?;
         about_scene(out, &job.work.scene, job.work.look)?;
         if let Some(veiled) = &job.work.veiled {
             about_veil(out, veiled)?;
@@ -79,6 +80,13 @@ fn about_unit(out: &mut dyn Write, work: &Done<'_>) -> io::Result<()> {
         LengthUnit::Degrees => writeln!(out, "unit     degrees, of {pixels:.1} pixels in the middle of the picture"),
         _ => writeln!(out, "unit     half the picture's {}, {pixels:.1} pixels", unit.to_string().replace('-', " ")),
     }
+}
+
+/// What clipped pixels shine like.
+fn about_clipped(out: &mut dyn Write, scene: &Gathered) -> io::Result<()> {
+    let Some(recovery) = &scene.recovery else { return Ok(()) };
+    writeln!(out, "recovered: {recovery}")?;
+    recovery.note.iter().try_for_each(|note| writeln!(out, "         {note}"))
 }
 
 /// What is light, and what it becomes.

@@ -19,6 +19,7 @@ use crate::options::ReadArgs;
 use crate::options::SceneArgs;
 use crate::options::VeilArgs;
 use crate::plan::{CostModel, Plan};
+use crate::scene::Recovery;
 use crate::terminal::stderr::warn;
 use crate::terminal::stdout;
 use crate::{Result, photo};
@@ -129,6 +130,9 @@ impl Told<'_> {
             }
             None => writeln!(out, "scene    {} ghosts", self.scene.ghosts.len())?,
         }
+        if let Some(recovery) = &self.scene.recovery {
+            writeln!(out, "recovered: {recovery}")?;
+        }
         if let Some(found) = self.scene.found.as_ref().filter(|_| self.look.finds()) {
             if found.regions == 0 {
                 writeln!(out, "         no lights: {}", found::none(found))?;
@@ -168,6 +172,7 @@ impl Told<'_> {
             lights: self.scene.lights.len(),
             sources: self.scene.sources(),
             ghosts: self.scene.count(),
+            recover: self.scene.recovery.as_ref(),
             plan: &self.planned.plan,
             veil: self.veil.as_ref(),
             predicted_total: self.planned.plan.predicted.total(),
@@ -191,6 +196,7 @@ struct Json<'a> {
     lights: usize,
     sources: Sources,
     ghosts: usize,
+    recover: Option<&'a Recovery>,
     plan: &'a Plan,
     veil: Option<&'a VeilPlanned>,
     predicted_total: f64,

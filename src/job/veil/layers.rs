@@ -9,7 +9,7 @@ use crate::Result;
 use crate::frame::Frame;
 use crate::look::{Look, Veil as Wanted};
 use crate::photo::Photo;
-use crate::scene::Emission;
+use crate::scene::{Emission, Recover};
 use crate::veil;
 
 /// The most layers that a veil has.
@@ -24,6 +24,8 @@ pub struct VeilSums {
     parts: Vec<Wanted>,
     seat: Seat,
     held: Held,
+    /// How clipped pixels shine.
+    recover: Recover,
 }
 
 /// The sums of a veil.
@@ -58,11 +60,11 @@ impl VeilSums {
         check(look, wanted)?;
         let (_, seat) = seated(look, wanted, photo, frame)?;
         let (parts, weights) = wanted.parts(MOST_LAYERS);
-        let sums = Self { parts, seat, held: Held::new(look, wanted) };
+        let sums = Self { parts, seat, held: Held::new(look, wanted), recover: look.find.recover };
         Ok(Some((sums, weights)))
     }
 
-    /// Sums them for the pixels of the frame, row by row from the top.
+    /// Sums them for the pixels of the frame as they shine, row by row from the top.
     ///
     /// # Errors
     /// [`crate::Error::ToleranceBelowFloor`] where the veil cannot be had to the tolerance.
@@ -149,7 +151,7 @@ mod tests {
     use crate::choices::Projection;
     use crate::photo::Alpha;
     use crate::psf::{Name, Parameters};
-    use crate::scene::VeilSection;
+    use crate::scene::{Recovered, VeilSection};
 
     const TOLERANCE: f64 = 1e-2;
 
@@ -190,7 +192,9 @@ mod tests {
             Look { fov: Some(150.0), ..look(aged(25.0), Some(Projection::Planar), 1.0, false) },
         ] {
             let frame = look.frame(&photo).unwrap();
-            let cast = cast(&look, &photo, &frame, Verify::Sample, None, &mut Stages::default()).unwrap().unwrap();
+            let shining = Recovered::default();
+            let cast =
+                cast(&look, &photo, &shining, &frame, Verify::Sample, None, &mut Stages::default()).unwrap().unwrap();
             let (sums, weights) = VeilSums::of(&look, &photo, &frame).unwrap().unwrap();
             let layers = sums.compute(Emission::of(&photo), &photo.pixels).unwrap();
             let weights: Vec<_> = weights.into_iter().map(|rgb| rgb.map(|weight| look.strength * weight)).collect();

@@ -19,7 +19,7 @@ use crate::frame::Frame;
 use crate::look::{Look, Veil as Wanted};
 use crate::photo::{Photo, View};
 use crate::psf::{Fault, Unit};
-use crate::scene::Emission;
+use crate::scene::{Emission, Recovered};
 use crate::veil::{self, Predicted};
 use crate::{Error, Result};
 
@@ -86,7 +86,7 @@ pub fn plan_veil(look: &Look, photo: &Photo, frame: &Frame) -> Result<Option<Vei
     Ok(Some(VeilPlanned::new(look, wanted, frame, prepared)))
 }
 
-/// The veil that a look asks for; none without one.
+/// The veil that a look asks for, of a photo that shines as it is `recovered`; none without one.
 ///
 /// # Errors
 /// [`Error::Usage`] where the look contradicts itself or the photo, [`Error::ToleranceBelowFloor`] where the veil cannot be had to
@@ -94,6 +94,7 @@ pub fn plan_veil(look: &Look, photo: &Photo, frame: &Frame) -> Result<Option<Vei
 pub(super) fn cast(
     look: &Look,
     photo: &Photo,
+    recovered: &Recovered,
     frame: &Frame,
     verify: Verify,
     computer: Option<&mut Computer>,
@@ -101,7 +102,7 @@ pub(super) fn cast(
 ) -> Result<Option<Cast>> {
     let Some(wanted) = look.veil.as_ref().filter(|_| look.strength != 0.0) else { return Ok(None) };
     let Prepared { view, seat, channels, asked } = prepared(look, wanted, photo, frame, stages)?;
-    let pixels = &*Emission::of(photo).given(&photo.pixels);
+    let pixels = &*Emission::of(photo).given(recovered.over(&photo.pixels));
     let stored = veil::Photo::rgba(pixels.as_flattened(), seat.stored).map_err(failed)?;
     let filled = seat.filled(pixels);
     let sources = veil::Photo::rgba(filled.as_flattened(), seat.size).map_err(failed)?;

@@ -1,6 +1,6 @@
 use super::*;
 use crate::choices::{Beyond, Evaluator, LengthUnit, LightBy, Mix, Normalize, Sources};
-use crate::scene::Goal;
+use crate::scene::{Goal, Recover};
 use crate::series::Bell;
 
 /// A file in a folder of its own; both are gone when it is dropped.
@@ -401,7 +401,7 @@ fn a_look_is_read_key_by_key() {
     let (_folder, path) = file(
         "look.toml",
         "preset = \"zoom\"\naxis = [0.1, -2]\nlight = []\n[look]\nstrength = 0\nsize = 2\ntint = [1, 0, 2.5]\n\
-         mix = \"energy\"\nnormalize = \"minmax\"\nunit = \"short-side\"\nfov = 40\nsources = \"photo\"\n[find]\nthreshold = 20\nmerge = 0\nmax_lights = 3\n\
+         mix = \"energy\"\nnormalize = \"minmax\"\nunit = \"short-side\"\nfov = 40\nsources = \"photo\"\nrecover = 3\n[find]\nthreshold = 20\nmerge = 0\nmax_lights = 3\n\
          by = \"luminance\"\nbeyond = \"drop\"\nfirefly_limit = 0\nknee = 0.5\nadd = true\n\
          [accuracy]\nbudget = 20\nallow_floor = true\nevaluator = \"rows\"\n",
     );
@@ -417,6 +417,7 @@ fn a_look_is_read_key_by_key() {
         unit: Some(LengthUnit::ShortSide),
         fov: Some(40.0),
         sources: Some(Sources::Photo),
+        recover: Some(Recover::Stops(3.0)),
     };
     assert_eq!(scene.look, look);
     let find = FindSection {

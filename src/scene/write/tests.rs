@@ -3,7 +3,7 @@ use crate::chance::Chance;
 use crate::choices::{Beyond, LengthUnit, LightBy, Mix, Normalize, Sources};
 use crate::choices::{Border, Projection};
 use crate::psf::{Name, Parameters};
-use crate::scene::{AccuracySection, Version, read_scene};
+use crate::scene::{AccuracySection, Recover, Version, read_scene};
 use crate::series::{Disc, SineGaussian, VonMises};
 
 const PERIOD: DVec2 = DVec2::new(4.1, 3.3);
@@ -104,6 +104,7 @@ fn scene(chance: &mut Chance) -> SceneFile {
             ),
             fov: maybe(chance, |chance| chance.between(0.1, 179.0)),
             sources: one_of(chance, &[None, Some(Sources::Photo), Some(Sources::Lights)]),
+            recover: one_of(chance, &[None, Some(Recover::Auto), Some(Recover::None), Some(Recover::Stops(2.5))]),
         },
         find: FindSection {
             by: one_of(chance, &[None, Some(LightBy::Luminance), Some(LightBy::Brightest)]),

@@ -41,7 +41,7 @@ pub fn work(old: &Look, new: &Look) -> Work {
         (old, new) if old != new => return Work::Ghosts,
         _ => {}
     }
-    if new.takes_photo() && old.find.knee() != new.find.knee() {
+    if new.takes_photo() && (old.find.knee(), old.find.recover) != (new.find.knee(), new.find.recover) {
         return Work::Ghosts;
     }
     let makes = (old.axis, old.size, old.tint) == (*axis, *size, *tint);
@@ -63,10 +63,11 @@ pub fn same_veil(old: &Look, new: &Look) -> bool {
     // All fields by name here as well; ghosts and their light have nothing to do with it.
     #[rustfmt::skip]
     let Look {
-        description: _, lens: _, unit, fov, axis: _, size, tint: _, lights: _, ghosts: _, find: _, strength, veil, mix: _, normalize, accuracy,
+        description: _, lens: _, unit, fov, axis: _, size, tint: _, lights: _, ghosts: _, find, strength, veil, mix: _, normalize, accuracy,
     } = new;
     (old.unit, old.fov, old.size, old.strength) == (*unit, *fov, *size, *strength)
         && (&old.veil, old.normalize, old.accuracy.allow_floor) == (veil, *normalize, accuracy.allow_floor)
+        && old.find.recover == find.recover
 }
 
 #[cfg(test)]

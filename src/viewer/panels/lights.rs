@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use super::{colour, ghosts};
 use crate::choices::{Beyond, LightBy, Sources};
-use crate::scene::{Found, Light};
+use crate::scene::{Found, Light, Recover};
 use crate::viewer::control::{self, Number, button, cell, choice, done_by, flag};
 use crate::viewer::document::Document;
 use crate::viewer::model::LookLights;
@@ -56,6 +56,14 @@ const FIREFLIES: Number = Number {
     logarithmic: true,
 };
 
+const RECOVER: Number = Number {
+    name: "Recover",
+    about: "How much brighter than it is shown what is clipped shines; the picture keeps what it shows.",
+    unit: "stops",
+    range: 0.0..=Recover::MOST,
+    logarithmic: false,
+};
+
 const PLACE: [Number; 2] = [place("Light x"), place("Light y")];
 
 const EXTENT: Number = Number {
@@ -92,8 +100,9 @@ const fn flux(name: &'static str) -> Number {
 const LIST: f32 = 192.0;
 
 /// Shows the panel.
-pub fn show(ui: &mut Ui, document: &mut Document, _: &Stage) {
+pub fn show(ui: &mut Ui, document: &mut Document, stage: &Stage) {
     find(ui, document);
+    recover(ui, document, stage);
     ui.separator();
     ui.horizontal(|ui| {
         let about = "Adds a white light in the picture's centre, as bright as the faintest here";
@@ -230,6 +239,35 @@ fn find(ui: &mut Ui, document: &mut Document) {
         0 => {}
         1 => control::hint(ui, "1 firefly, which is no light"),
         many => control::hint(ui, format!("{many} fireflies, which are no lights")),
+    }
+}
+
+/// How clipped pixels shine: by their photo's kind, or by so many stops. Where neither that nor a look has something to say, there is no row.
+fn recover(ui: &mut Ui, document: &mut Document, stage: &Stage) {
+    let number = |recover| match recover {
+        Recover::Auto => None,
+        Recover::None => Some(0.0),
+        Recover::Stops(stops) => Some(stops),
+    };
+    let told = stage.recovery();
+    let is_set = [&document.look, &document.opened].iter().any(|look| look.find.recover != Recover::Auto);
+    if !is_set && !document.photo.source.display_referred {
+        return;
+    }
+    let (before, opened) = (number(document.look.find.recover), number(document.opened.find.recover));
+    let mut now = before;
+    let open = told.map_or(0.0, |told| told.stops);
+    RECOVER.optional(ui, &mut now, (open, "what files for displays are likely to need"), opened);
+    if now != before {
+        document.look.find.recover = match now {
+            None => Recover::Auto,
+            Some(stops) if stops > 0.0 => Recover::Stops(stops),
+            Some(_) => Recover::None,
+        };
+    }
+    if let Some(told) = told {
+        control::hint(ui, told.to_string());
+        told.note.iter().for_each(|note| control::hint(ui, note));
     }
 }
 

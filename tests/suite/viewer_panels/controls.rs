@@ -4,7 +4,7 @@ use vglare::choices::{Beyond, Border, LengthUnit, LightBy, Mix, Normalize};
 use vglare::look::Accuracy;
 use vglare::photo::ToneMap;
 use vglare::psf::Luminance;
-use vglare::scene::{FindOptions, Ghost};
+use vglare::scene::{FindOptions, Ghost, Recover};
 use vglare::series::Bell;
 use vglare::viewer::{KEYS, Shows, Viewing};
 
@@ -55,6 +55,7 @@ fn changed(session: &mut Session) -> (Look, Viewing) {
         beyond: Beyond::Drop,
         firefly_limit: 100.0,
         knee: 0.0,
+        recover: Recover::Stops(3.0),
     };
     (look.mix, look.normalize) = (Mix::Energy, Normalize::Clamp);
     look.accuracy = Accuracy {
@@ -102,7 +103,7 @@ fn all_open(ghost: bool) -> Session {
 }
 
 /// What holds more that is to go back, or moves what is below it when it has gone back; from below.
-const LAST: [&str; 6] = ["Plot", "False colours", "Measure", "Wipe", "Goal", "By the photo"];
+const LAST: [&str; 7] = ["Plot", "False colours", "Measure", "Wipe", "Goal", "Recover", "By the photo"];
 
 #[test]
 fn every_control_says_what_it_sets_and_goes_back() {
