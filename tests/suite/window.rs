@@ -17,13 +17,14 @@ fn lamp() -> Photo {
     Photo::new(240, 160, (0..160).flat_map(|j| (0..240).map(move |i| lamp(i, j))).collect())
 }
 
-/// A desk with the window open on the lamp.
+/// A desk with the window open on the lamp, which is found to be a light.
 fn opened(options: &[&str]) -> Desk {
     let mut desk = Desk::new();
-    let photo = desk.path("lamp.exr");
+    let (photo, look) = (desk.path("lamp.exr"), desk.path("lights.toml"));
     photo::write(&photo, &lamp(), &WriteOptions::default()).unwrap();
-    desk.open(&photo, options);
-    desk.to_window(&["windowsize"], &["1260", "1160"]);
+    std::fs::write(&look, "version = 2\n[look]\nsources = \"lights\"\n").unwrap();
+    desk.open(&photo, &[options, &["--scene", look.to_str().unwrap()]].concat());
+    desk.to_window(&["windowsize"], &["1260", "1240"]);
     desk.rested();
     desk
 }
@@ -137,7 +138,7 @@ fn the_window_is_looked_at_made_small_hidden_and_closed() {
     desk.rested();
     assert!(desk.is_open(), "it ended while it was hidden");
     desk.to_window(&["windowmap"], &[]);
-    desk.to_window(&["windowsize"], &["1260", "1160"]);
+    desk.to_window(&["windowsize"], &["1260", "1240"]);
     desk.to_window(&["windowfocus"], &[]);
     desk.key("f");
     assert!(shows_the_lamp(&desk), "it comes back");

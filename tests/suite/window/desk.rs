@@ -50,7 +50,7 @@ impl Desk {
     pub fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
         let mut server = Command::new("Xvfb");
-        server.args(["-displayfd", "1", "-screen", "0", "1280x1180x24", "-nolisten", "tcp", "-fbdir"]);
+        server.args(["-displayfd", "1", "-screen", "0", "1280x1260x24", "-nolisten", "tcp", "-fbdir"]);
         server.arg(folder.path()).stdout(Stdio::piped()).stderr(File::create(folder.path().join("xvfb")).unwrap());
         let mut server = server.spawn().expect("Xvfb is there; on Debian: apt-get install xvfb");
         let mut number = String::new();
