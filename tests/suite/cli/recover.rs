@@ -60,7 +60,9 @@ fn clipped_lamps_make_more_glare_and_the_picture_keeps_what_it_shows() {
         assert!(told["share"].as_f64().unwrap() > 0.3, "{told}");
         assert!((kept / shown - 1.0).abs() < 1e-5, "{kept} {shown}");
         // All of a rim is not as bright; a lamp that is brighter in its middle is smaller, and its ghosts fall into the picture.
-        assert!(glare > 1.5 * plain && glare < 20.0 * plain, "{more:?}: {glare} {plain}");
+        // Above a threshold, what is below it does not count.
+        let most = if more.contains(&"--threshold") { 160.0 } else { 20.0 };
+        assert!(glare > 1.5 * plain && glare < most * plain, "{more:?}: {glare} {plain}");
         let (said, _, [auto, _]) = with("auto");
         assert!(said.contains("up to 256 times as bright") && auto > 5.0 * glare, "{said}");
         let options = [more, &[]].concat();
