@@ -4,6 +4,7 @@ use super::layout::{FIELD, PROBES};
 use super::resource::{Buffer, Scratch, Texel, Texture};
 use super::runner::Runner;
 use crate::Result;
+use crate::series::Bell;
 
 /// The bells that ghosts are summed with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,7 +32,8 @@ impl Bells {
 
     /// What a shader is specialised with to include them.
     pub fn defines(self) -> impl Iterator<Item = (&'static str, &'static str)> {
-        const HAS: [&str; 9] = ["HAS_0", "HAS_1", "HAS_2", "HAS_3", "HAS_4", "HAS_5", "HAS_6", "HAS_7", "HAS_8"];
+        const HAS: [&str; Bell::KINDS as usize] =
+            ["HAS_0", "HAS_1", "HAS_2", "HAS_3", "HAS_4", "HAS_5", "HAS_6", "HAS_7", "HAS_8", "HAS_9"];
         let has = (0..).zip(HAS).filter(move |(kind, _)| self.kinds >> kind & 1 == 1).map(|(_, name)| (name, "1"));
         std::iter::once(("BELL", self.file)).chain(has)
     }

@@ -4,12 +4,16 @@ use std::sync::Arc;
 
 use super::planned::stays_finite;
 use super::{Computer, Done, Planned, Stages, Step, Wanted, Watch, bright_light, panorama, plan, settings, veil};
-use crate::Result;
 use crate::frame::Frame;
 use crate::look::{Gathered, Look, Search};
 use crate::photo::{self, BadPixels, Facts, Photo};
 use crate::renderer::Settings;
 use crate::scene::{FindOptions, Recovered};
+use crate::{Result, limits};
+
+/// What planning the ghosts of all pixels takes, and what each pixel adds to that, in bytes.
+const SOURCES: u64 = 160 << 20;
+const SOURCE: u64 = 32;
 
 /// A photo in which it is known what glares.
 pub struct Found<'a> {
@@ -58,6 +62,10 @@ impl<'a> Found<'a> {
         let bad = stages.time("survey", || photo::survey(&photo));
         let recovered = || if look.takes_light() { look.recovered(&photo) } else { Recovered::default() };
         let recovered = stages.time("recover", recovered);
+        if look.strength != 0.0 && look.takes_photo() {
+            // Their light, its moments, and the waves that a plan looks at.
+            limits::room(SOURCES + SOURCE * photo.pixels.len() as u64, "the ghosts of all pixels")?;
+        }
         let scene = stages.time("lights", || look.gather_knowing(&photo, &recovered, &frame, search));
         let mut warnings = photo.source.notes.clone();
         let bright = |threshold| bright_light(&photo, &recovered, &frame, look.find.by, threshold);
@@ -76,7 +84,13 @@ impl<'a> Found<'a> {
         if knee != 0.0 && !(look.takes_photo() && threshold.is_some()) {
             warnings.push("a knee is of a threshold where every pixel is a source, and changes nothing here".into());
         }
-        if look.strength != 0.0 && (look.veil.is_some() || !scene.is_dark()) {
+        let veil = look.veil_on(&frame);
+        if look.strength != 0.0 && look.veil.is_some() && veil.is_none() {
+            let why = if frame.pixel_aspect == 1.0 { "glare that is normalised" } else { "pixels that are not square" };
+            warnings
+                .push(format!("{why} can have no veil: that of the lens is left out, and its ghosts are all there is"));
+        }
+        if veil.is_some() || look.strength != 0.0 && !scene.is_dark() {
             warnings.extend(panorama::seam(&photo));
         }
         Ok(Self { look, facts: photo.facts(), photo, frame, bad, scene, stages, warnings, recovered, settings })

@@ -13,6 +13,7 @@ use std::sync::Arc;
 use glam::DVec2;
 
 use crate::choices::{Evaluator, LengthUnit, Mix, Normalize, Sources};
+use crate::frame::Frame;
 use crate::scene::presets::{self, DEFAULT_PRESET};
 use crate::scene::{FindOptions, Ghost, Goal, Lens, LensGhost, LensVeil, Light};
 use crate::{Error, Result};
@@ -165,6 +166,15 @@ impl Look {
             return &[];
         }
         self.lens.ghosts()
+    }
+
+    /// The veil on a picture, where the look has one and any strength. One that no more than the lens brings along is left out where
+    /// no veil can be: where glare is normalised, and on pixels that are not square.
+    pub fn veil_on(&self, frame: &Frame) -> Option<&Veil> {
+        let veil = self.veil.as_ref().filter(|_| self.strength != 0.0)?;
+        let fits = self.normalize == Normalize::None && frame.pixel_aspect == 1.0;
+        let brought = self.lens.veil().is_some_and(|of_lens| veil.is_of(&of_lens.section));
+        (fits || !brought).then_some(veil)
     }
 
     /// The same through another lens, with its veil, if it has one, in place of the one before.

@@ -41,6 +41,11 @@ impl Veil {
         })
     }
 
+    /// Whether its function is what a section says, however exact it is to be.
+    pub(super) fn is_of(&self, section: &VeilSection) -> bool {
+        self.parameters == section.parameters
+    }
+
     /// The same as another section says it. No file is read again for a scatter, a projection, a border or a tolerance.
     ///
     /// # Errors

@@ -56,7 +56,7 @@ impl VeilSums {
     /// # Errors
     /// [`crate::Error::Usage`] where the look contradicts itself or the photo.
     pub fn of(look: &Look, photo: &Photo, frame: &Frame) -> Result<Option<(Self, Vec<[f64; 3]>)>> {
-        let Some(wanted) = look.veil.as_ref().filter(|_| look.strength != 0.0) else { return Ok(None) };
+        let Some(wanted) = look.veil_on(frame) else { return Ok(None) };
         check(look, wanted)?;
         let (_, seat) = seated(look, wanted, photo, frame)?;
         let (parts, weights) = wanted.parts(MOST_LAYERS);

@@ -81,7 +81,7 @@ fn seated(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame) -> Result<
 /// # Errors
 /// Those that computing it would have before it begins.
 pub fn plan_veil(look: &Look, photo: &Photo, frame: &Frame) -> Result<Option<VeilPlanned>> {
-    let Some(wanted) = look.veil.as_ref().filter(|_| look.strength != 0.0) else { return Ok(None) };
+    let Some(wanted) = look.veil_on(frame) else { return Ok(None) };
     let prepared = prepared(look, wanted, photo, frame, &mut Stages::default())?;
     Ok(Some(VeilPlanned::new(look, wanted, frame, prepared)))
 }
@@ -100,7 +100,7 @@ pub(super) fn cast(
     computer: Option<&mut Computer>,
     stages: &mut Stages,
 ) -> Result<Option<Cast>> {
-    let Some(wanted) = look.veil.as_ref().filter(|_| look.strength != 0.0) else { return Ok(None) };
+    let Some(wanted) = look.veil_on(frame) else { return Ok(None) };
     let Prepared { view, seat, channels, asked } = prepared(look, wanted, photo, frame, stages)?;
     let pixels = &*Emission::of(photo).given(recovered.over(&photo.pixels));
     let stored = veil::Photo::rgba(pixels.as_flattened(), seat.stored).map_err(failed)?;
