@@ -19,6 +19,11 @@ pub struct ReadArgs {
     /// What becomes of pixels that an unfinished OpenEXR file lacks
     #[arg(long, value_enum, default_value_t = MissingArg::Refuse)]
     missing: MissingArg,
+
+    /// What part of the file's width and height lies beyond each edge of the picture, from 0 to below 0.5: what is there shines, so that a
+    /// lamp that leaves the picture fades, but only OpenEXR keeps it, beyond its display window [default: 0]
+    #[arg(long, value_name = "F", value_parser = overscan, allow_hyphen_values = true)]
+    overscan: Option<f64>,
 }
 
 /// `--missing`.
@@ -37,8 +42,14 @@ impl ReadArgs {
             MissingArg::Refuse => Missing::Refuse,
             MissingArg::Zero => Missing::Zero,
         };
-        ReadOptions { missing, primaries: self.primaries }
+        ReadOptions { missing, primaries: self.primaries, overscan: self.overscan.unwrap_or(0.0) }
     }
+}
+
+/// Less than what would leave nothing.
+fn overscan(text: &str) -> Result<f64, String> {
+    let part = finite(text)?;
+    if (0.0..0.5).contains(&part) { Ok(part) } else { Err("expected a number from 0 to below 0.5".into()) }
 }
 
 /// Primaries by a name, or by eight chromaticities.

@@ -247,7 +247,15 @@ impl Photo {
     /// # Errors
     /// Why that does not follow from what it says, in words.
     pub fn view(&self) -> Result<Option<View>, String> {
-        self.source.camera.map_or(Ok(None), |camera| camera.view(&self.frame))
+        let Some(camera) = self.source.camera else { return Ok(None) };
+        let [columns, rows] = self.source.overscan;
+        if [columns, rows] == [0; 2] {
+            return camera.view(&self.frame);
+        }
+        // The file speaks of all that it holds.
+        let Frame { width, height, .. } = self.frame;
+        let view = camera.view(&Frame { width: width + 2 * columns, height: height + 2 * rows, ..self.frame })?;
+        Ok(view.map(|view| View { said: None, ..view }))
     }
 }
 

@@ -115,6 +115,8 @@ pub struct Source {
     pub space: Option<String>,
     /// What a person ought to know of how the file was read: what was damaged, missing, or taken for something else.
     pub notes: Vec<String>,
+    /// Columns and rows beyond each edge of the picture that are pixels of the file's: see [`ReadOptions::overscan`].
+    overscan: [u32; 2],
     /// What it says of the camera; [`Photo::view`] tells what follows.
     camera: Option<camera::Camera>,
     /// Whether it is more to be written fast than small.
@@ -152,6 +154,7 @@ impl Source {
             picture: None,
             space: None,
             notes: Vec::new(),
+            overscan: [0; 2],
             camera: None,
             quick: false,
             exr: None,

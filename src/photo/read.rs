@@ -29,6 +29,9 @@ pub struct ReadOptions {
     pub missing: Missing,
     /// The primaries of the file's numbers, whatever the file says of them.
     pub primaries: Option<Primaries>,
+    /// What part of the file's width and height lies beyond each edge of the picture, from 0 to less than 1/2: pixels there are stored,
+    /// and shine, but are none of the picture.
+    pub overscan: f64,
 }
 
 /// Reads a photo.
@@ -57,6 +60,7 @@ pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Photo> {
             photo.source.primaries = primaries.other_than_rec709();
         }
         shape_pixels(&mut photo);
+        overscanned(&mut photo, options.overscan);
         Ok(photo)
     };
     // Decoders of foreign files are the one place where a panic is not a bug of ours.
@@ -65,6 +69,16 @@ pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Photo> {
         Ok(Err(reason)) => Err(Error::read_photo(path, explain(&*reason))),
         Err(_) => Err(Error::read_photo(path, "the file is damaged, and its decoder gave up")),
     }
+}
+
+/// Leaves a part of the picture at each edge outside of it, where it is stored all the same.
+fn overscanned(photo: &mut Photo, part: f64) {
+    let Frame { width, height, window, .. } = &mut photo.frame;
+    let beyond =
+        [*width, *height].map(|side| ((part * f64::from(side)).round() as u32).min(side.saturating_sub(1) / 2));
+    (*width, *height) = (*width - 2 * beyond[0], *height - 2 * beyond[1]);
+    (window.x, window.y) = (window.x - beyond[0] as i32, window.y - beyond[1] as i32);
+    photo.source.overscan = beyond;
 }
 
 /// Gives the picture the shape of its pixels, where that is one that pixels have.

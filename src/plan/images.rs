@@ -26,8 +26,10 @@ use crate::problem::{Image, Images};
 use crate::raster::{Reduction, aliasing, spline};
 use crate::series::{Bell, Modes as Bells};
 
-/// Images that one task goes through. Tasks are joined in their order, whatever the number of cores.
+/// Images that one task goes through, at most, and tasks at least, where there are as many images. Tasks are joined in their order,
+/// whatever the number of cores.
 const CHUNK: usize = 8;
+const TASKS: usize = 4;
 
 /// What f64 loses of a sum over a lattice, over the sum of its terms' magnitudes: some thousands of roundings.
 const DOUBLES: f64 = 1e-12;
@@ -214,7 +216,7 @@ pub(super) fn sums(
         }
         sums
     };
-    let chunks: Vec<Vec<[f64; 12]>> = all.par_chunks(CHUNK).map(chunk).collect();
+    let chunks: Vec<Vec<[f64; 12]>> = all.par_chunks(all.len().div_ceil(TASKS).clamp(1, CHUNK)).map(chunk).collect();
     chunks.into_iter().reduce(|mut all, chunk| {
         all.as_flattened_mut().iter_mut().zip(chunk.as_flattened()).for_each(|(all, chunk)| *all += chunk);
         all

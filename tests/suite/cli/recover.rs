@@ -111,7 +111,7 @@ fn a_look_file_says_it_and_bad_values_are_refused() {
     place.write("in.png", &lamp(40.0));
     let (_, by_option) = place.glare("in.png", &["--recover", "2.5"]);
     let [glare, _] = place.sums();
-    place.text("look.toml", "[look]\nunit = \"short-side\"\nrecover = 2.5\n");
+    place.text("look.toml", "version = 2\n[look]\nunit = \"short-side\"\nrecover = 2.5\n");
     let (_, by_file) = place.glare("in.png", &["--scene", "look.toml"]);
     assert_eq!((&by_file["recover"], place.sums()[0]), (&by_option["recover"], glare));
     // Options win.

@@ -72,3 +72,39 @@ fn what_contradicts_the_whole_photo_is_refused() {
     studied.failed(2, &["every pixel is a source: give --sources lights"]);
     assert!(!place.path("page").exists());
 }
+
+/// A lamp of four columns that moves to the left, and out of the picture.
+#[test]
+fn with_overscan_a_lamp_that_leaves_the_picture_keeps_its_glare() {
+    let place = Workplace::new();
+    place.text("lens.toml", "[[lens_ghost]]\nalong = 1\nsize = 0.5\nshare = 0.1\n");
+    let mean = |lamp: i32, options: &[&str], size: [u32; 2]| {
+        let light =
+            |k: i32| if (lamp..lamp + 4).contains(&(k % 100)) && (30..50).contains(&(k / 100)) { 50.0 } else { 0.0 };
+        let pixels = (0..100 * 80).map(|k| [light(k), light(k), light(k), 1.0]).collect();
+        place.write("in.exr", &vglare::photo::Photo::new(100, 80, pixels));
+        let mut args =
+            vec!["apply", "in.exr", "-o", "out.pfm", "--glare", "glare.pfm", "--force", "--lens", "lens.toml"];
+        args.extend(options);
+        place.vglare(&args).succeeded();
+        let glare = vglare::photo::read(&place.path("glare.pfm")).expect("the glare");
+        assert_eq!([glare.width(), glare.height()], size);
+        glare.pixels.iter().map(|pixel| f64::from(pixel[0])).sum::<f64>() / glare.pixels.len() as f64
+    };
+    let over = ["--overscan", "0.1"];
+    let steps = [14, 12, 10, 8, 6].map(|lamp| mean(lamp, &over, [80, 64]));
+    for pair in steps.windows(2) {
+        assert!(pair[1] < pair[0] && pair[1] > 0.8 * pair[0], "{steps:?}");
+    }
+    // The same pixels without what lies beyond.
+    assert!(mean(-4, &[], [100, 80]) == 0.0);
+    // What is beyond stays in OpenEXR, beyond its display window, and is what it was.
+    let args = ["apply", "in.exr", "-o", "out.exr", "--overscan", "0.1", "--strength", "0"];
+    place.vglare(&args).succeeded();
+    let kept = vglare::photo::read(&place.path("out.exr")).expect("the picture");
+    assert_eq!((kept.width(), kept.height(), kept.pixels.len()), (80, 64, 100 * 80));
+    assert_eq!((kept.frame.window.x, kept.frame.window.y), (-10, -8));
+    for wrong in ["0.5", "-0.1", "nan", "much"] {
+        place.vglare(&["apply", "in.exr", "-o", "no.exr", "--overscan", wrong]).failed(2, &["--overscan"]);
+    }
+}

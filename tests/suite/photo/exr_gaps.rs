@@ -43,7 +43,7 @@ fn without_table(bytes: &[u8]) -> Vec<u8> {
 }
 
 fn with_zeros(path: &Path) -> Photo {
-    photo::read_with(path, &ReadOptions { missing: Missing::Zero, primaries: None }).unwrap()
+    photo::read_with(path, &ReadOptions { missing: Missing::Zero, primaries: None, ..ReadOptions::default() }).unwrap()
 }
 
 #[test]
@@ -109,7 +109,10 @@ fn an_unfinished_file_says_how_much_is_missing_and_is_read_on_request() {
         let text = reason(&folder.put("cut.exr", &bytes[..bytes.len() - 1]));
         assert!(text.contains(&format!("cut short: 1 of its {total} blocks is missing")), "{text}");
         let path = folder.put("none.exr", &unfinished(&bytes, total));
-        assert!(photo::read_with(&path, &ReadOptions { missing: Missing::Zero, primaries: None }).is_err());
+        assert!(
+            photo::read_with(&path, &ReadOptions { missing: Missing::Zero, primaries: None, ..ReadOptions::default() })
+                .is_err()
+        );
     }
     // A render that stopped after 2 of 5 blocks.
     let text = reason(&input("exr-unfinished-render.exr"));
@@ -150,7 +153,7 @@ fn other_parts_that_lack_gigabytes_are_not_filled() {
     let at = bytes.windows(17).rposition(|bytes| bytes == b"dataWindow\0box2i\0").unwrap() + 21;
     bytes[at + 8..at + 12].copy_from_slice(&99_999_999_i32.to_le_bytes());
     let path = folder.put("wide.exr", &bytes);
-    let options = ReadOptions { missing: Missing::Zero, primaries: None };
+    let options = ReadOptions { missing: Missing::Zero, primaries: None, ..ReadOptions::default() };
     let text = photo::read_with(&path, &options).unwrap_err().to_string();
     assert!(text.contains("too much to be filled"), "{text}");
 }

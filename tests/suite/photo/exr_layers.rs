@@ -127,7 +127,7 @@ fn senseless_chromaticities_and_pixels_are_told() {
     odd.shared_attributes.pixel_aspect = 0.0;
     put(&path, vec![odd]);
     let notes = |primaries| {
-        let options = ReadOptions { missing: Missing::Refuse, primaries };
+        let options = ReadOptions { missing: Missing::Refuse, primaries, ..ReadOptions::default() };
         let photo = photo::read_with(&path, &options).unwrap();
         assert!(photo.source.pixel_aspect == 1.0);
         photo.source.notes
