@@ -134,6 +134,18 @@ pub enum Beyond {
     Drop,
 }
 
+/// What a light is that is long, bent or hollow.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "terminal", derive(clap::ValueEnum))]
+#[serde(rename_all = "lowercase")]
+pub enum LightShape {
+    /// Several lights, each about as long as wide, so that it keeps its shape
+    #[default]
+    Kept,
+    /// One round light of the same extent
+    Ball,
+}
+
 /// What a look's lengths are counted in: sizes, and positions from the picture's centre.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "terminal", derive(clap::ValueEnum))]

@@ -113,7 +113,7 @@ impl Look {
         let add = matches!(lights, LookLights::FoundAnd(_));
         let sources = if matches!(lights, LookLights::Photo(_)) { Sources::Photo } else { Sources::Lights };
         let Accuracy { goal, allow_floor, degree, period, evaluator } = *accuracy;
-        let FindOptions { by, threshold, merge, max_lights, beyond, firefly_limit, knee, recover } = *find;
+        let FindOptions { by, threshold, merge, shape, max_lights, beyond, firefly_limit, knee, recover } = *find;
         SceneFile {
             version: Version::Two,
             description: description.clone(),
@@ -137,6 +137,7 @@ impl Look {
                 by: Some(by),
                 threshold,
                 merge: Some(merge),
+                shape: Some(shape),
                 max_lights: Some(max_lights),
                 beyond: Some(beyond),
                 firefly_limit: Some(firefly_limit),
@@ -158,7 +159,7 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
-    use crate::choices::{Beyond, Evaluator, LightBy, Normalize};
+    use crate::choices::{Beyond, Evaluator, LightBy, LightShape, Normalize};
     use crate::psf::{Name, Parameters};
     use crate::scene::{Ghost, Goal, Lens, Light, Recover, presets, read_scene, write_scene};
     use crate::series::Bell;
@@ -190,6 +191,7 @@ mod tests {
                 by: LightBy::Luminance,
                 threshold: Some(3.5),
                 merge: 0.1,
+                shape: LightShape::Ball,
                 max_lights: 5,
                 beyond: Beyond::Drop,
                 firefly_limit: 20.0,

@@ -82,10 +82,11 @@ fn options(look: &Look) -> Result<Vec<String>> {
     options.changed("--unit", *unit, default.unit, name);
     options.given("--fov", *fov, |fov| fov.to_string());
     options.changed("--axis", *axis, default.axis, pair);
-    let FindOptions { by, threshold, merge, max_lights, beyond, firefly_limit, knee, recover } = *find;
+    let FindOptions { by, threshold, merge, shape, max_lights, beyond, firefly_limit, knee, recover } = *find;
     options.changed("--by", by, default.find.by, name);
     options.given("--threshold", threshold, |x| x.to_string());
     options.changed("--merge", merge, default.find.merge, |x| x.to_string());
+    options.changed("--shape", shape, default.find.shape, name);
     // Beside pixels a number of lights means nothing, and no command line can say it.
     if !matches!(lights, LookLights::Photo(_)) {
         options.changed("--max-lights", max_lights, default.find.max_lights, |n| n.to_string());

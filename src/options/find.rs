@@ -1,7 +1,7 @@
 //! Which pixels of a photo are lights.
 
 use super::numbers::{factor, not_negative};
-use crate::choices::{Beyond, LightBy};
+use crate::choices::{Beyond, LightBy, LightShape};
 use crate::scene::{FindOptions, Recover};
 
 /// What counts as a light in a photo.
@@ -23,6 +23,10 @@ pub struct FindArgs {
     /// [default: 0.02]
     #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = not_negative)]
     merge: Option<f64>,
+
+    /// What a light is that is long, bent or hollow: several that keep its shape, or one ball [default: kept]
+    #[arg(long, value_enum, value_name = "HOW")]
+    shape: Option<LightShape>,
 
     /// At most so many lights, the brightest; who says how many means --sources lights [default: 4096]
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
@@ -61,6 +65,7 @@ impl FindArgs {
             by: self.by.unwrap_or(set.by),
             threshold: self.threshold.or(set.threshold),
             merge: self.merge.unwrap_or(set.merge),
+            shape: self.shape.unwrap_or(set.shape),
             max_lights: self.max_lights.unwrap_or(set.max_lights),
             beyond: self.beyond.unwrap_or(set.beyond),
             firefly_limit: self.firefly_limit.unwrap_or(set.firefly_limit),

@@ -17,8 +17,9 @@ use super::emission::Emission;
 use super::lit::Lit;
 use super::nearest::Nearest;
 use super::regions::{Moments, regions};
+use super::shape;
 use super::threshold::{self, Rule};
-use crate::choices::{Beyond, LightBy};
+use crate::choices::{Beyond, LightBy, LightShape};
 use crate::frame::Frame;
 
 /// What counts as a light.
@@ -32,6 +33,8 @@ pub struct FindOptions {
     /// A region whose centroid is no farther than this from a brighter one joins it; half picture heights. The brighter
     /// one counts as a disc of its own rms extent. 0 merges none.
     pub merge: f64,
+    /// What becomes of a region that is no ball.
+    pub shape: LightShape,
     /// At most so many lights are kept, the brightest.
     pub max_lights: usize,
     /// What becomes of the others.
@@ -52,6 +55,7 @@ impl FindOptions {
         by: LightBy::Luminance,
         threshold: None,
         merge: MERGE,
+        shape: LightShape::Ball,
         max_lights: 64,
         beyond: Beyond::Drop,
         firefly_limit: 0.0,
@@ -77,6 +81,7 @@ impl Default for FindOptions {
             by: LightBy::Brightest,
             threshold: None,
             merge: MERGE,
+            shape: LightShape::Kept,
             max_lights: 4096,
             beyond: Beyond::Join,
             firefly_limit: 1000.0,
@@ -102,7 +107,7 @@ pub struct Found {
     pub threshold: f64,
     /// How the threshold was chosen.
     pub rule: Rule,
-    /// Connected regions before any were merged.
+    /// Connected regions before any were merged, one that is no ball as the parts that it was taken apart into.
     pub regions: usize,
     /// Lights beyond [`FindOptions::max_lights`] that were dropped.
     pub dropped: usize,
@@ -171,15 +176,20 @@ pub fn find_shining(
     };
     let peak = lit.peak();
     let lit = lit.shining(shining);
-    let mut found = regions(&lit, threshold as f32, frame.pixel_aspect);
+    let found = regions(&lit, threshold as f32, frame.pixel_aspect);
     let fireflies = lit.fireflies(threshold as f32);
-    let regions = found.len();
-    let total = found.iter().map(|region| region.weight).sum::<f64>().max(f64::MIN_POSITIVE);
+    let (mut found, long): (Vec<Moments>, Vec<Moments>) =
+        found.into_iter().partition(|region| options.shape == LightShape::Ball || shape::is_round(region));
+    let parts = shape::parts(&lit, threshold as f32, frame.pixel_aspect, &long);
+    let regions = found.len() + parts.len();
+    let total = found.iter().chain(&parts).map(|region| region.weight).sum::<f64>().max(f64::MIN_POSITIVE);
     found.sort_by(brightest_first);
     // No two pixels are farther apart than a diagonal.
     let diagonal = frame.pixel_aspect * f64::from(frame.window.width) + f64::from(frame.window.height);
     let radius = (options.merge / frame.pixel_size()).min(diagonal);
     let mut lights = merge(found, radius, count as f64 * frame.pixel_aspect);
+    // What was just taken apart is not put together again.
+    lights.extend(parts);
     lights.sort_by(brightest_first);
     let beyond = lights.split_off(options.max_lights.min(lights.len()));
     let beyond_share = beyond.iter().fold(0.0, |sum, region| sum + region.weight / total);

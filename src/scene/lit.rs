@@ -98,6 +98,12 @@ impl<'a> Lit<'a> {
         &self.pixels[row * self.width..][..self.width]
     }
 
+    /// How bright a pixel is, by column and row; a firefly is not.
+    pub fn brightness(&self, [column, row]: [usize; 2]) -> f32 {
+        let at = row * self.width + column;
+        if self.fireflies.binary_search(&at).is_ok() { 0.0 } else { self.emission.brightness(&self.pixels[at]) }
+    }
+
     /// All pixels, fireflies too.
     pub fn pixels(&self) -> &'a [[f32; 4]] {
         self.pixels

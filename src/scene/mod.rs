@@ -18,6 +18,7 @@ mod recover;
 mod referred;
 mod regions;
 mod sections;
+mod shape;
 mod tables;
 pub mod threshold;
 mod veil;

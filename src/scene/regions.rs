@@ -25,6 +25,10 @@ pub(super) struct Moments {
     pub mean: DVec2,
     /// Sum of brightness times the squared distance from the mean.
     pub spread: f64,
+    /// What the pixels cover.
+    pub area: f64,
+    /// Column and row of the first pixel, from the top and then from the left.
+    pub first: [u32; 2],
 }
 
 impl Moments {
@@ -34,6 +38,11 @@ impl Moments {
             return;
         }
         let weight = self.weight + other.weight;
+        let earlier = (other.first[1], other.first[0]) < (self.first[1], self.first[0]);
+        if self.weight <= 0.0 || earlier {
+            self.first = other.first;
+        }
+        self.area += other.area;
         let between = other.mean - self.mean;
         self.spread += other.spread + between.length_squared() * (self.weight * (other.weight / weight));
         self.mean += between * (other.weight / weight);
@@ -44,6 +53,12 @@ impl Moments {
     /// Mean square distance from the mean along one axis, between the pixels' centres.
     pub fn variance(&self) -> f64 {
         self.spread / (2.0 * self.weight)
+    }
+
+    /// Of one pixel, by column and row.
+    pub fn of_pixel(lit: &Lit<'_>, [i, j]: [u32; 2], aspect: f64) -> Self {
+        let at = j as usize * lit.width() + i as usize;
+        Self::of_run(&lit.pixels()[at..=at], lit.emission(), i as usize, j as usize, aspect)
     }
 
     /// Of neighbouring pixels in row `j`, the first of which is in column `i`; `aspect` is a pixel's width over its height.
@@ -59,7 +74,9 @@ impl Moments {
         }
         let offset = sums[1] / sums[0];
         let mean = DVec2::new(aspect * (i as f64 + offset), j as f64);
-        Self { flux, weight: sums[0], mean, spread: aspect * aspect * (sums[2] - sums[1] * offset).max(0.0) }
+        let spread = aspect * aspect * (sums[2] - sums[1] * offset).max(0.0);
+        let (area, first) = (aspect * pixels.len() as f64, [i as u32, j as u32]);
+        Self { flux, weight: sums[0], mean, spread, area, first }
     }
 }
 

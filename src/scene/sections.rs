@@ -6,7 +6,7 @@ use toml::Spanned;
 use super::bells::Fault;
 use super::number::{Allowed, IsFactor, IsField, IsFraction, IsNotNegative, IsPositive, NotNegative, Number, plain};
 use super::{FindOptions, Recover};
-use crate::choices::{Beyond, Evaluator, LengthUnit, LightBy, Mix, Normalize, Sources};
+use crate::choices::{Beyond, Evaluator, LengthUnit, LightBy, LightShape, Mix, Normalize, Sources};
 
 /// What a scene file means by what it does not say.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -74,6 +74,9 @@ pub struct FindSection {
     /// How close regions are that become one light, 0 or more, in half picture heights.
     #[serde(default, deserialize_with = "number::<_, IsNotNegative>", skip_serializing_if = "Option::is_none")]
     pub merge: Option<f64>,
+    /// What becomes of a region that is no ball.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shape: Option<LightShape>,
     /// Most lights.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_lights: Option<usize>,
@@ -175,6 +178,7 @@ impl FindSection {
             by: self.by.unwrap_or(default.by),
             threshold: self.threshold,
             merge: self.merge.unwrap_or(default.merge),
+            shape: self.shape.unwrap_or(default.shape),
             max_lights: self.max_lights.unwrap_or(default.max_lights),
             beyond: self.beyond.unwrap_or(default.beyond),
             firefly_limit: self.firefly_limit.unwrap_or(default.firefly_limit),

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use glam::DVec2;
 use serde_json::Value;
-use vglare::choices::{Beyond, LengthUnit, LightBy};
+use vglare::choices::{Beyond, LengthUnit, LightBy, LightShape};
 use vglare::gpu::Backend;
 use vglare::job::{Computer, Found, Known, Stages, Unwatched, Wanted};
 use vglare::look::{Look, LookLens, LookLights};
@@ -135,8 +135,9 @@ fn an_old_look_that_is_written_anew_is_the_same() {
 fn what_a_file_without_a_version_does_not_say_is_as_it_was() {
     let folder = tempfile::tempdir().expect("a folder");
     let look = read(&text(folder.path(), ""));
-    let FindOptions { by, threshold, merge, max_lights, beyond, firefly_limit, knee, recover } = look.find;
-    assert_eq!((by, beyond, recover), (LightBy::Luminance, Beyond::Drop, Recover::None));
+    let FindOptions { by, threshold, merge, shape, max_lights, beyond, firefly_limit, knee, recover } = look.find;
+    assert_eq!((by, shape), (LightBy::Luminance, LightShape::Ball));
+    assert_eq!((beyond, recover), (Beyond::Drop, Recover::None));
     assert_eq!((threshold, merge, max_lights, firefly_limit, knee), (None, 0.02, 64, 0.0, 0.0));
     assert_eq!((look.lens, look.lights), (LookLens::preset("v1/classic-prime").expect("a lens"), LookLights::Found));
     assert_eq!((look.unit, look.veil, look.axis), (LengthUnit::Height, None, DVec2::ZERO));

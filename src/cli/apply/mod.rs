@@ -248,7 +248,7 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
-    use crate::choices::{Beyond, Evaluator, LengthUnit, LightBy, Mix, Normalize};
+    use crate::choices::{Beyond, Evaluator, LengthUnit, LightBy, LightShape, Mix, Normalize};
     use crate::look::{Accuracy, LookLens, LookLights};
     use crate::options::command_line;
     use crate::scene::{FindOptions, Goal, Light, Recover, presets, write_scene};
@@ -286,6 +286,7 @@ mod tests {
                 by: LightBy::Luminance,
                 threshold: Some(1e-7),
                 merge: 0.0,
+                shape: LightShape::Ball,
                 max_lights: 5,
                 beyond: Beyond::Drop,
                 firefly_limit: 0.0,
@@ -344,6 +345,7 @@ mod tests {
             ("preset", look.lens().name),
             ("axis", format!("{},{}", look.axis.x, look.axis.y)),
             ("by", format!("{:?}", look.find.by).to_lowercase()),
+            ("shape", format!("{:?}", look.find.shape).to_lowercase()),
             ("beyond", format!("{:?}", look.find.beyond).to_lowercase()),
             ("merge", look.find.merge.to_string()),
             ("max_lights", look.find.max_lights.to_string()),
@@ -424,7 +426,7 @@ mod tests {
         write_scene(&path, &file, false).unwrap();
         let line = format!("vglare apply 'my night.exr' -o \"it's.png\" --scene {}", path.display());
         assert_eq!(look(&line), changed());
-        let given = "--preset classic-prime --axis 0,0 --size 1 --tint 1,1,1 --by brightest --threshold 2 --merge 0.02 \
+        let given = "--preset classic-prime --axis 0,0 --size 1 --tint 1,1,1 --by brightest --threshold 2 --merge 0.02 --shape kept \
                      --max-lights 4096 --beyond join --firefly-limit 1000 --knee 0 --recover auto --strength 1 --mix add --normalize none --tolerance 0.001 --degree 1,1 \
                      --period 3,3 --evaluator grid";
         let expected = Look {

@@ -1,5 +1,5 @@
 use super::*;
-use crate::choices::{Beyond, Evaluator, LengthUnit, LightBy, Mix, Normalize, Sources};
+use crate::choices::{Beyond, Evaluator, LengthUnit, LightBy, LightShape, Mix, Normalize, Sources};
 use crate::scene::{Goal, Recover};
 use crate::series::Bell;
 
@@ -402,7 +402,7 @@ fn a_look_is_read_key_by_key() {
         "look.toml",
         "preset = \"zoom\"\naxis = [0.1, -2]\nlight = []\n[look]\nstrength = 0\nsize = 2\ntint = [1, 0, 2.5]\n\
          mix = \"energy\"\nnormalize = \"minmax\"\nunit = \"short-side\"\nfov = 40\nsources = \"photo\"\nrecover = 3\n[find]\nthreshold = 20\nmerge = 0\nmax_lights = 3\n\
-         by = \"luminance\"\nbeyond = \"drop\"\nfirefly_limit = 0\nknee = 0.5\nadd = true\n\
+         by = \"luminance\"\nbeyond = \"drop\"\nshape = \"ball\"\nfirefly_limit = 0\nknee = 0.5\nadd = true\n\
          [accuracy]\nbudget = 20\nallow_floor = true\nevaluator = \"rows\"\n",
     );
     let scene = read_scene(&path).unwrap();
@@ -422,6 +422,7 @@ fn a_look_is_read_key_by_key() {
     assert_eq!(scene.look, look);
     let find = FindSection {
         by: Some(LightBy::Luminance),
+        shape: Some(LightShape::Ball),
         beyond: Some(Beyond::Drop),
         threshold: Some(20.0),
         merge: Some(0.0),

@@ -1,6 +1,6 @@
 use super::*;
 use crate::chance::Chance;
-use crate::choices::{Beyond, LengthUnit, LightBy, Mix, Normalize, Sources};
+use crate::choices::{Beyond, LengthUnit, LightBy, LightShape, Mix, Normalize, Sources};
 use crate::choices::{Border, Projection};
 use crate::psf::{Name, Parameters};
 use crate::scene::{AccuracySection, Recover, Version, read_scene};
@@ -108,6 +108,7 @@ fn scene(chance: &mut Chance) -> SceneFile {
         },
         find: FindSection {
             by: one_of(chance, &[None, Some(LightBy::Luminance), Some(LightBy::Brightest)]),
+            shape: one_of(chance, &[None, Some(LightShape::Kept), Some(LightShape::Ball)]),
             beyond: one_of(chance, &[None, Some(Beyond::Join), Some(Beyond::Drop)]),
             threshold: maybe(chance, positive),
             merge: maybe(chance, positive),

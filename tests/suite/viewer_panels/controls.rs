@@ -1,6 +1,6 @@
 //! What every control of the panels has: what it says of itself, a way back, and keys.
 
-use vglare::choices::{Beyond, Border, LengthUnit, LightBy, Mix, Normalize};
+use vglare::choices::{Beyond, Border, LengthUnit, LightBy, LightShape, Mix, Normalize};
 use vglare::look::Accuracy;
 use vglare::photo::ToneMap;
 use vglare::psf::Luminance;
@@ -51,6 +51,7 @@ fn changed(session: &mut Session) -> (Look, Viewing) {
         by: LightBy::Luminance,
         threshold: Some(3.0),
         merge: 0.5,
+        shape: LightShape::Ball,
         max_lights: 3,
         beyond: Beyond::Drop,
         firefly_limit: 100.0,
