@@ -232,12 +232,14 @@ fn add(
     scale: Rgb,
 ) {
     let size = image.ghost.size / period;
+    // Its own modes among them.
+    let own: Vec<u32> = counts.iter().take(degree[0] as usize + 1).map(|&count| count.min(degree[1] + 1)).collect();
     let (factor, parts) = match image.ghost.bell.shape().modes() {
         Bells::Product(factor) => (Some(factor), None),
         Bells::Radial(radial) => {
-            (None, Some(radial.means(counts, size).into_iter().map(|mean| [mean, 0.0, 0.0, 0.0]).collect::<Vec<_>>()))
+            (None, Some(radial.means(&own, size).into_iter().map(|mean| [mean, 0.0, 0.0, 0.0]).collect::<Vec<_>>()))
         }
-        Bells::Plane(plane) => (None, Some(plane.parts(counts, size))),
+        Bells::Plane(plane) => (None, Some(plane.parts(&own, size))),
         // Finding modes enough for it has failed before anyone looks at them.
         Bells::None => return,
     };
@@ -255,18 +257,18 @@ fn add(
         centred_at(&centred, middle[axis] / period[axis], first[axis] * spacing[axis])
     });
     let weights = [0, 1, 2].map(|colour| image.ghost.radiance[colour] / scale[colour]);
-    let mut start = 0;
-    for ((n, x), &count) in x.iter().enumerate().zip(counts) {
-        for (m, y) in y.iter().enumerate().take(count as usize) {
+    let (mut start, mut own_start) = (0, 0);
+    for ((n, x), (&count, &own)) in x.iter().enumerate().zip(counts.iter().zip(&own)) {
+        for (m, y) in y.iter().enumerate().take(own as usize) {
             for (colour, (waves, weight)) in waves.iter().zip(weights).enumerate() {
                 let waves = products(*x, *y, waves.each_ref().map(|wave| wave[(n, m)]));
-                let waves = parts.as_ref().map_or(waves, |parts| turned(waves, parts[start + m]));
+                let waves = parts.as_ref().map_or(waves, |parts| turned(waves, parts[own_start + m]));
                 for (part, value) in waves.into_iter().enumerate() {
                     sums[start + m][3 * part + colour] += weight * value;
                 }
             }
         }
-        start += count as usize;
+        (start, own_start) = (start + count as usize, own_start + own as usize);
     }
 }
 

@@ -99,7 +99,7 @@ impl Raster {
     pub(crate) fn along_row(&self, row: usize, columns: Range<usize>, factors: &[f64]) -> [f64; 3] {
         [0, 1, 2].map(|c| {
             let light = &self.channels[c].plane.row(row)[columns.clone()];
-            self.factors[c] * light.iter().zip(factors).map(|(light, factor)| f64::from(*light) * factor).sum::<f64>()
+            self.factors[c] * product(light, factors)
         })
     }
 
@@ -200,6 +200,18 @@ impl Raster {
     pub(crate) fn levels(&self) -> u32 {
         lattice::levels(self.frame)
     }
+}
+
+/// The sum of products, some of them at a time.
+fn product(light: &[f32], factors: &[f64]) -> f64 {
+    const LANES: usize = 8;
+    let mut sums = [0.0; LANES];
+    let ((light, rest), (factors, others)) = (light.as_chunks::<LANES>(), factors.as_chunks::<LANES>());
+    for (light, factors) in light.iter().zip(factors) {
+        (0..LANES).for_each(|lane| sums[lane] += f64::from(light[lane]) * factors[lane]);
+    }
+    let rest: f64 = rest.iter().zip(others).map(|(light, factor)| f64::from(*light) * factor).sum();
+    sums.iter().sum::<f64>() + rest
 }
 
 /// Cosines and sines of some harmonics of a frequency, at some places: a row each.

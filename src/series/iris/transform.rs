@@ -10,7 +10,8 @@ use glam::DVec2;
 use ndarray::Array2;
 
 use super::{Iris, NOTHING};
-use crate::series::bell::{Bounded, Plane};
+use crate::series::bell::{Bounded, Plane, Shape as _};
+use crate::series::waves;
 
 impl Iris {
     /// Values at points of a square lattice about the centre, row by row, and their distance: such that sums of them over waves no faster
@@ -19,9 +20,12 @@ impl Iris {
         // What the rule is off by is the transform as far from 2π over the distance.
         let step = TAU / (z + NOTHING / self.fall());
         let half = (self.radius_of(NOTHING) / step).ceil();
-        let side = 2 * half as usize + 1;
-        let place = |index: usize| step * (index as f64 - half);
-        (step, Array2::from_shape_fn((side, side), |(row, column)| self.at(DVec2::new(place(column), place(row)))))
+        let places: Vec<f64> = (0..=2 * half as usize).map(|index| step * (index as f64 - half)).collect();
+        let mut values = Array2::zeros((places.len(), places.len()));
+        self.over(&places, &places, DVec2::ONE, &mut |row, of_row| {
+            values.row_mut(row).iter_mut().zip(of_row).for_each(|(value, of_row)| *value = *of_row);
+        });
+        (step, values)
     }
 
     /// η at the poles.
@@ -62,10 +66,12 @@ impl Plane for Iris {
         let fastest = turn * DVec2::new(counts.len() as f64, most as f64);
         let (step, values) = self.samples(fastest.max_element());
         let half = (values.nrows() / 2) as f64;
+        // A row for each point, a column for each harmonic.
         let tables = |harmonics: usize, first: f64| {
-            let place = |point: usize| first * step * (point as f64 - half);
-            [f64::cos as fn(f64) -> f64, f64::sin].map(|wave| {
-                Array2::from_shape_fn((values.nrows(), harmonics), |(point, n)| wave(place(point) * n as f64))
+            let turns: Vec<f64> = (0..values.nrows()).map(|point| first * step * (point as f64 - half) / TAU).collect();
+            let waves = waves(&turns, &vec![1.0; harmonics]);
+            [0, 1].map(|part| {
+                Array2::from_shape_fn((values.nrows(), harmonics), |(point, n)| waves[n * values.nrows() + point][part])
             })
         };
         let ([cos_x, sin_x], [cos_y, sin_y]) = (tables(counts.len(), turn.x), tables(most, turn.y));
