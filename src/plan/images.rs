@@ -29,7 +29,7 @@ use crate::series::{Bell, Modes as Bells};
 /// Images that one task goes through, at most, and tasks at least, where there are as many images. Tasks are joined in their order,
 /// whatever the number of cores.
 const CHUNK: usize = 8;
-const TASKS: usize = 4;
+const TASKS: usize = 16;
 
 /// What f64 loses of a sum over a lattice, over the sum of its terms' magnitudes: some thousands of roundings.
 const DOUBLES: f64 = 1e-12;

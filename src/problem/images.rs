@@ -52,7 +52,7 @@ fn near(centres: &[f64], place: f64, end: f64) -> (Range<usize>, Vec<f64>) {
 }
 
 /// What of its peak a bell that does not end is left out at, in a sum over all pixels.
-const NOTHING: f64 = 1e-12;
+const NOTHING: f64 = 1e-10;
 
 /// The places of points along an axis, each once.
 struct Places {
