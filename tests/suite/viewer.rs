@@ -39,10 +39,15 @@ struct Session {
 
 impl Session {
     fn new() -> Self {
+        Self::looking(lit())
+    }
+
+    /// With a look that photos are opened with.
+    fn looking(look: Look) -> Self {
         let turn = turn();
         // Pictures are written on EGL, beside the window's own context as under a real window.
         let device = Device::open(&[Backend::OsMesa]).unwrap();
-        let app = App::new(&device, lit(), Arc::new(|| {})).unwrap();
+        let app = App::new(&device, look, Arc::new(|| {})).unwrap();
         let screen = Screen::hidden(&device, SIZE).unwrap();
         Self { device, app, screen, time: 0.0, due: Duration::ZERO, copied: Vec::new(), _turn: turn }
     }

@@ -88,7 +88,8 @@ fn in_a_folder() -> (TempDir, Session) {
         }
     }
     photo::write(&path, &photo, &WriteOptions::default()).unwrap();
-    let mut session = Session::new();
+    // With no veil but those that the tests ask for.
+    let mut session = Session::looking(Look { veil: None, ..lit() });
     session.app.open(path);
     session.wait(|app| !app.is_reading());
     let viewing = &mut session.app.document_mut().unwrap().viewing;
