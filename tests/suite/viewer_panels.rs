@@ -41,7 +41,8 @@ impl Session {
         let screen = Screen::hidden(&device, size).unwrap();
         let mut session = Self { app, screen, time: 0.0, due: Duration::ZERO, _turn: turn };
         session.app.add(Document::new(Path::new("lamp.exr"), lamp(), lit()));
-        session.settle();
+        // The lens's veil is laid over the picture, and told of, whenever it is there.
+        session.wait(|app| !app.is_veiling());
         session
     }
 

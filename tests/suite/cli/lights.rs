@@ -156,9 +156,15 @@ fn glare_that_is_out_of_all_proportion_is_warned_of() {
     let place = Workplace::new();
     place.photo("in.exr");
     let apply = |more: &[&str]| {
+        // Gaussians, which reach every pixel.
         let args = ["apply", "in.exr", "--force", "--report", "report.json", "--sources", "lights"];
-        place.vglare(&[&args[..], more].concat())
+        place.vglare(&[&args[..], &["--preset", "v1/classic-prime"], more].concat())
     };
+    // A veil of that strength would scatter more than all the light there is; openings are glare as any other.
+    let openings = ["apply", "in.exr", "-o", "out.exr", "--force", "--strength", "1e30", "--sources", "lights"];
+    place.vglare(&openings).failed(2, &["a strength of 1", "all of it"]);
+    let said = place.vglare(&[&openings[..], &["--veil", "none"]].concat()).succeeded().stderr();
+    assert!(said.contains("times as bright as the photo's brightest pixel"), "{said}");
     let said = apply(&["-o", "out.exr", "--strength", "1e30"]).succeeded().stderr();
     assert!(
         said.contains("times as bright as the photo's brightest pixel") && said.contains("strength of 1e30"),

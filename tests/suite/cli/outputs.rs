@@ -48,8 +48,9 @@ fn one_bad_pixel_harms_one_pixel() {
         photo.pixels[30 * 96 + 40][1] = value;
         place.write("bad.exr", &photo);
         let apply = |name: &str, output: &str| {
-            // A pixel that is no source any more would be missing in the glare.
-            place.vglare(&["apply", name, "-o", output, "--force", "--sources", "lights"]).succeeded()
+            // A pixel that is no source any more would be missing in the ghosts of all pixels, and in a veil.
+            let line = ["apply", name, "-o", output, "--force", "--sources", "lights", "--veil", "none"];
+            place.vglare(&line).succeeded()
         };
         apply("good.exr", "good-out.exr");
         let ran = apply("bad.exr", "bad-out.exr");
@@ -101,12 +102,24 @@ fn the_glare_alone_is_what_was_added() {
     let place = Workplace::new();
     let photo = night();
     place.write("in.exr", &photo);
-    place.vglare(&["apply", "in.exr", "-o", "out.exr", "--glare", "glare.exr", "--strength", "0.7"]).succeeded();
-    let (out, glare) = (photo::read(&place.path("out.exr")).unwrap(), photo::read(&place.path("glare.exr")).unwrap());
-    for ((before, after), added) in photo.pixels.iter().zip(&out.pixels).zip(&glare.pixels) {
+    // A veil takes its light from the photo, unless it is added.
+    for (options, veil) in [(&[][..], true), (&["--mix", "add"], true), (&["--veil", "none"], false)] {
+        let line = "apply in.exr -o out.exr --glare glare.exr --strength 0.7 --report report.json --force";
+        place.vglare(&[&line.split(' ').collect::<Vec<_>>(), options].concat()).succeeded();
+        let ledger = place.read_json("report.json")["veil"]["ledger"].clone();
+        assert_eq!(ledger.is_object(), veil, "{options:?}");
+        let part = |name: &str, colour: usize| ledger[name][colour].as_f64().unwrap();
+        let (out, glare) =
+            (photo::read(&place.path("out.exr")).unwrap(), photo::read(&place.path("glare.exr")).unwrap());
         for colour in 0..3 {
-            let sum = before[colour] + added[colour];
-            assert!((after[colour] - sum).abs() <= 1e-6 * sum, "{before:?} + {added:?} = {after:?}");
+            let keeps = if veil { part("kept", colour) / part("light", colour) } else { 1.0 };
+            // What is taken is what goes elsewhere: less than none where pixels are as coarse as these.
+            assert_eq!((keeps - 1.0).abs() > 0.01, options.is_empty(), "{options:?}: {keeps}");
+            for ((before, after), added) in photo.pixels.iter().zip(&out.pixels).zip(&glare.pixels) {
+                let sum = keeps * f64::from(before[colour]) + f64::from(added[colour]);
+                let off = (f64::from(after[colour]) - sum).abs();
+                assert!(off <= 1e-6 * sum, "{options:?}: {keeps} {before:?} + {added:?} = {after:?}");
+            }
         }
     }
 }
@@ -116,9 +129,9 @@ fn energy_is_taken_from_the_lights() {
     let place = Workplace::new();
     let photo = night();
     place.write("in.exr", &photo);
-    place
-        .vglare(&["apply", "in.exr", "-o", "out.exr", "--mix", "energy", "--threshold", "10", "--sources", "lights"])
-        .succeeded();
+    // Of a lens some of whose ghosts lie about the light itself, and that has no veil, which every pixel pays for.
+    let line = "apply in.exr -o out.exr --preset v1/classic-prime --mix energy --threshold 10 --sources lights";
+    place.vglare(&line.split(' ').collect::<Vec<_>>()).succeeded();
     let out = photo::read(&place.path("out.exr")).unwrap();
     let at = 12 * 96 + 70;
     assert!(out.pixels[at][0] < photo.pixels[at][0], "the lamp is weaker by what it scatters");

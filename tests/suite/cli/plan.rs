@@ -13,10 +13,12 @@ fn number(value: &Value, path: &str) -> f64 {
 fn a_plan_is_told_line_by_line_and_nothing_is_written() {
     let place = Workplace::new();
     place.photo("in.exr");
-    let text = place.vglare(&["plan", "in.exr", "--size", "1920x1280", "--sources", "lights"]).succeeded().stdout();
+    // Of Gaussians, which every evaluator can sum.
+    let line = "plan in.exr --size 1920x1280 --preset v1/classic-prime --sources lights";
+    let text = place.vglare(&line.split(' ').collect::<Vec<_>>()).succeeded().stdout();
     for word in [
         "1920 x 1280",
-        "2 lights through classic-prime",
+        "2 lights through v1/classic-prime",
         "period",
         "degree",
         "groups",
@@ -100,7 +102,10 @@ fn what_cannot_be_had_is_refused_in_the_plan_with_the_reason() {
 fn a_plan_for_another_size_costs_what_that_size_costs() {
     let place = Workplace::new();
     place.photo("in.exr");
-    let plan = |size: &str| place.json(&["plan", "in.exr", "--json", "--size", size, "--evaluator", "grid"]);
+    // Of few lights: the spectrum of all pixels takes as long whatever size it is shown at.
+    let line =
+        ["plan", "in.exr", "--json", "--evaluator", "grid", "--sources", "lights", "--preset", "v1/classic-prime"];
+    let plan = |size: &str| place.json(&[&line[..], &["--size", size]].concat());
     let (small, large) = (plan("96x64"), plan("1920x1280"));
     assert_eq!(large["size"], serde_json::json!([1920, 1280]));
     assert!(number(&large, "/predicted_ms") > 5.0 * number(&small, "/predicted_ms"), "{large}");
@@ -190,7 +195,9 @@ fn every_pixel_can_be_verified() {
     let place = Workplace::new();
     place.photo("in.exr");
     let error = |verify: &str| {
-        let apply = ["apply", "in.exr", "-o", "out.exr", "--force", "--report", "report.json", "--verify", verify];
+        // Of Gaussians, whose direct sum over all pixels is a product, and soon had.
+        let line = "apply in.exr -o out.exr --force --report report.json --preset v1/classic-prime --verify";
+        let apply = line.split(' ').chain([verify]).collect::<Vec<_>>();
         let said = place.vglare(&apply).succeeded().stdout();
         (place.read_json("report.json")["error"].clone(), said)
     };
@@ -202,8 +209,8 @@ fn every_pixel_can_be_verified() {
     assert!(number(&sample, "/measured") <= number(&full, "/measured"), "{sample} {full}");
     assert!(number(&full, "/measured") <= number(&full, "/predicted"), "{full}");
     // A poor choice is found out at every pixel too.
-    let rough = ["apply", "in.exr", "-o", "out.exr", "--force", "--degree", "2,2", "--strict", "--verify", "full"];
-    place.vglare(&rough).failed(3, &["1.0e-3"]);
+    let rough = "apply in.exr -o out.exr --force --preset v1/classic-prime --degree 2,2 --strict --verify full";
+    place.vglare(&rough.split(' ').collect::<Vec<_>>()).failed(3, &["1.0e-3"]);
     place.vglare(&["apply", "in.exr", "-o", "out.exr", "--verify", "half"]).failed(2, &["sample", "full"]);
 }
 
@@ -232,6 +239,7 @@ fn a_veil_is_planned_as_it_is_computed() {
     place.photo("in.exr");
     for options in [
         &["--veil", "cie", "--fov", "50", "--projection", "planar", "--tolerance", "5e-3"][..],
+        &[],
         &["--preset", "classic-veil"],
         &["--preset", "haze-filter", "--unit", "diagonal"],
     ] {
@@ -259,6 +267,8 @@ fn a_veil_is_planned_as_it_is_computed() {
     // A picture of twice the size spans the same angles.
     let twice = place.json(&["plan", "in.exr", "--json", "--size", "192x128", "--veil", "cie", "--fov", "50"]);
     assert_eq!((number(&twice, "/veil/fov"), &twice["size"]), (50.0, &serde_json::json!([192, 128])));
-    assert!(!text(&[]).contains("veil     "));
+    // That of the lens, too, unless somebody says otherwise.
+    assert!(text(&[]).contains("veil     camera, planar: scatters 2.0 % of the light"));
+    assert!(!text(&["--veil", "none"]).contains("veil     "));
     place.vglare(&["plan", "in.exr", "--veil", "cie"]).failed(2, &["--fov"]);
 }

@@ -1,4 +1,4 @@
-//! Presets that name a veil beside their ghosts, or in their place.
+//! Presets that name a veil beside their ghosts or alone, and lens files that name one in their place.
 
 use serde_json::json;
 use vglare::frame::{Frame, Window};
@@ -22,7 +22,7 @@ fn the_eye_sees_a_glow_around_every_pixel() {
     place.write("in.exr", &point());
     let line = ["apply", "in.exr", "--glare", "veil.exr", "--preset", "eye", "--report", "report.json", "--force"];
     let said = place.vglare(&line).succeeded().stdout();
-    assert!(said.contains("eye: a veil in place of its ghosts"), "{said}");
+    assert!(said.contains("lens     none, so no ghosts") && said.contains("veil     mixture"), "{said}");
     let report = place.read_json("report.json");
     assert_eq!((&report["veil"]["psf"], &report["plan"]), (&json!("mixture"), &json!(null)));
     let veil = photo::read(&place.path("veil.exr")).unwrap();
@@ -49,33 +49,104 @@ fn a_lens_has_its_veil_unless_somebody_says_otherwise() {
         (report["veil"]["psf"].as_str().map(str::to_owned), ghosts > 0, std::fs::read(place.path("out.exr")).unwrap())
     };
     place.text("eye.toml", "version = 2\npreset = \"eye\"\n");
-    place.text("ghosts.toml", "version = 2\npreset = \"eye\"\n[veil]\npsf = \"none\"\n");
+    place.text("first.toml", "preset = \"eye\"\n");
+    place.text("ghosts.toml", "version = 2\npreset = \"zoom\"\n[veil]\npsf = \"none\"\n");
     place.text("own.toml", "version = 2\npreset = \"eye\"\n[veil]\npsf = \"gaussian\"\nwidth = 0.1\nscatter = 0.1\n");
     let told = |options: &str| {
         let (veil, ghosts, _) = run(options);
         (veil.unwrap_or_default(), ghosts)
     };
     for (options, veil, ghosts) in [
-        ("--preset eye", "mixture", false),
-        ("--preset eye --veil none", "", true),
-        ("--preset eye --veil stiles-holladay --fov 40 --projection planar", "stiles-holladay", false),
-        ("--preset classic-veil", "camera", true),
+        // A lens of today has ghosts and a veil, and each can be had alone.
+        ("", "camera", true),
+        ("--veil none", "", true),
+        ("--lens none", "", false),
+        ("--veil camera --lens none", "camera", false),
+        ("--veil stiles-holladay --fov 40 --projection planar", "stiles-holladay", true),
+        ("--preset classic-prime", "camera", true),
+        ("--preset modern-prime", "camera", true),
+        ("--preset anamorphic", "camera", true),
+        ("--preset zoom", "camera", true),
+        ("--preset vintage-uncoated", "camera", true),
+        // These are a veil alone, and nothing without it.
+        ("--preset classic-veil", "camera", false),
         ("--preset haze-filter", "mixture", false),
+        ("--preset eye", "mixture", false),
+        ("--preset eye --veil none", "", false),
+        ("--preset eye --veil stiles-holladay --fov 40 --projection planar", "stiles-holladay", false),
+        // Those of version 1 had ghosts, and but for one no veil.
         ("--preset v1/classic-prime", "", true),
         ("--preset v1/eye", "", true),
         ("--preset v1/classic-veil", "camera", true),
+        ("--scene first.toml", "", true),
+        ("--scene first.toml --preset eye", "mixture", false),
         ("--scene eye.toml", "mixture", false),
         ("--scene ghosts.toml", "", true),
         ("--scene own.toml", "gaussian", false),
-        ("--scene own.toml --preset classic-veil", "gaussian", true),
+        ("--scene own.toml --preset classic-prime", "gaussian", true),
         ("--scene eye.toml --preset v1/zoom", "", true),
         ("--scene eye.toml --lens none --veil none", "", false),
     ] {
         assert_eq!(told(options), (veil.to_owned(), ghosts), "{options}");
     }
     // A preset's own file does what the preset does.
-    place.text("mine.toml", &place.vglare(&["presets", "eye"]).succeeded().stdout());
-    assert!(run("--preset eye").2 == run("--lens mine.toml").2);
+    for preset in ["eye", "classic-prime"] {
+        place.text("mine.toml", &place.vglare(&["presets", preset]).succeeded().stdout());
+        assert!(run(&format!("--preset {preset}")).2 == run("--lens mine.toml").2, "{preset}");
+    }
+    let list = place.json(&["presets", "--all", "--json"]);
+    let told = |name: &str| list.as_array().unwrap().iter().find(|entry| entry["name"] == name).unwrap().clone();
+    for (name, scatter, ghosts) in
+        [("classic-prime", 0.02, 5), ("classic-veil", 0.02, 0), ("haze-filter", 0.12, 0), ("eye", 0.3965, 0)]
+    {
+        let entry = told(name);
+        assert!((entry["scatter"].as_f64().unwrap() - scatter).abs() < 1e-9, "{entry}");
+        assert_eq!((&entry["ghosts"], &entry["replaces_ghosts"]), (&json!(ghosts), &json!(false)), "{entry}");
+        assert_eq!(told(&format!("v1/{name}"))["scatter"].is_null(), name != "classic-veil");
+    }
+}
+
+#[test]
+fn a_veil_that_replaces_ghosts_does_so_wherever_there_is_one() {
+    let place = Workplace::new();
+    place.photo("in.exr");
+    let ghost = "[[lens_ghost]]\nalong = -0.5\nsize = 0.3\nshare = 0.05\n";
+    let veil = "[veil]\npsf = \"camera\"\nscatter = 0.1\n";
+    place.text("both.toml", &format!("{ghost}{veil}"));
+    place.text("either.toml", &format!("{ghost}{veil}replaces_ghosts = true\n"));
+    place.text("neither.toml", &format!("{ghost}{veil}replaces_ghosts = false\n"));
+    place.text("bare.toml", ghost);
+    place.text("alone.toml", veil);
+    place.text("own.toml", "version = 2\n[veil]\npsf = \"gaussian\"\nwidth = 0.1\nscatter = 0.1\n");
+    place.text("none.toml", "version = 2\n[veil]\npsf = \"none\"\n");
+    let run = |options: &str| {
+        let line = ["apply", "in.exr", "-o", "out.exr", "--report", "report.json", "--force", "--no-calibration"];
+        let line: Vec<_> = line.into_iter().chain(options.split_whitespace()).collect();
+        let said = place.vglare(&line).succeeded().stdout();
+        let report = place.read_json("report.json");
+        let ghosts = report["scene"]["ghosts"].as_u64().unwrap();
+        let veil = report["veil"]["psf"].as_str().unwrap_or_default().to_owned();
+        (veil, ghosts > 0, std::fs::read(place.path("out.exr")).unwrap(), said)
+    };
+    for (options, veil, ghosts) in [
+        ("--lens either.toml", "camera", false),
+        ("--lens either.toml --sources lights", "camera", false),
+        ("--lens either.toml --veil none", "", true),
+        ("--lens either.toml --veil gaussian --width 0.1 --scatter 0.1", "gaussian", false),
+        ("--lens either.toml --scene own.toml", "gaussian", false),
+        ("--lens either.toml --scene none.toml", "", true),
+        ("--lens both.toml", "camera", true),
+        ("--lens neither.toml", "camera", true),
+    ] {
+        let (got, has, _, said) = run(options);
+        assert_eq!((&*got, has), (veil, ghosts), "{options}");
+        let replaced = options.contains("--lens either") && !veil.is_empty();
+        assert_eq!(said.contains("lens     either: a veil in place of its ghosts"), replaced, "{options}: {said}");
+    }
+    let same = |one: &str, other: &str| assert!(run(one).2 == run(other).2, "{one}, {other}");
+    same("--lens either.toml", "--lens alone.toml");
+    same("--lens either.toml --veil none", "--lens bare.toml");
+    same("--lens both.toml", "--lens neither.toml");
     for (file, text, words) in [
         ("both.toml", "[veil]\npsf = \"none\"\nage = 30\n", "veil.age"),
         ("scene.toml", "[veil]\npsf = \"cie\"\nfov = 50\nreplaces_ghosts = true\n", "replaces_ghosts"),
@@ -86,9 +157,6 @@ fn a_lens_has_its_veil_unless_somebody_says_otherwise() {
     let lens = "[veil]\npsf = \"camera\"\nreplaces_ghosts = 1\n[[lens_ghost]]\nalong = 1\nsize = 1\nshare = 0.1\n";
     place.text("lens.toml", lens);
     place.vglare(&["apply", "in.exr", "-o", "o.exr", "--lens", "lens.toml"]).failed(1, &["lens.toml", "true or false"]);
-    let list = place.json(&["presets", "--json"]);
-    let eye = list.as_array().unwrap().iter().find(|entry| entry["name"] == "eye").unwrap();
-    assert!((eye["scatter"].as_f64().unwrap() - 0.3965).abs() < 1e-9 && eye["replaces_ghosts"] == json!(true));
 }
 
 #[test]

@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use vglare::photo::Photo;
+
 use super::Workplace;
 use super::tables::tidy;
 
@@ -100,7 +102,7 @@ fn the_page_names_files_that_are_there_and_nothing_from_elsewhere() {
 }
 
 #[test]
-fn folders_that_hold_other_files_and_photos_without_lights_are_refused() {
+fn folders_that_hold_other_files_and_lights_that_are_not_there_are_refused() {
     let place = Workplace::new();
     place.photo("night.exr");
     std::fs::create_dir(place.path("mine")).unwrap();
@@ -111,7 +113,26 @@ fn folders_that_hold_other_files_and_photos_without_lights_are_refused() {
     into("night.exr").failed(1, &["night.exr"]);
     place.vglare(&["tradeoff", "no.exr", "-o", "new"]).failed(1, &["no.exr"]);
     place.vglare(&["tradeoff", "night.exr", "--preset", "no-such-lens", "-o", "new"]).failed(2, &["no-such-lens"]);
-    place.vglare(&["tradeoff", "night.exr", "--threshold", "1e9", "-o", "new"]).failed(2, &["night.exr", "glares"]);
+    let none = ["--sources", "lights", "--threshold", "1e9", "--veil", "none"];
+    place.vglare(&[&["tradeoff", "night.exr", "-o", "new"][..], &none].concat()).failed(2, &["night.exr", "glares"]);
     place.vglare(&["tradeoff", "night.exr"]).failed(2, &["--output"]);
     assert!(!place.path("new").exists(), "no folder where nothing is to be written");
+}
+
+#[test]
+fn a_photo_without_lights_has_the_ghosts_of_its_pixels() {
+    let place = Workplace::new();
+    let (width, height) = (12, 8);
+    place.write("dim.exr", &Photo::new(width, height, vec![[0.2, 0.3, 0.1, 1.0]; (width * height) as usize]));
+    // Of few ghosts, of few terms.
+    place.text("wide.toml", "[[lens_ghost]]\nalong = -0.5\nsize = 0.6\nshare = 0.01\n");
+    place.vglare(&["tradeoff", "dim.exr", "--quick", "--lens", "wide.toml", "-o", "trade"]).succeeded();
+    assert_eq!(place.read_json("trade/results.json")["ghosts"], width * height);
+    let rows = rows(&place, "trade/results.csv");
+    let own = of(&rows, "tolerance").into_iter().filter(|row| row["planner"] == "true").collect::<Vec<_>>();
+    assert!(!own.is_empty());
+    for row in own {
+        let [measured, predicted, asked] = ["measured", "predicted", "asked"].map(|column| number(row, column));
+        assert!(measured <= predicted && predicted <= asked, "{row:?}");
+    }
 }

@@ -103,7 +103,8 @@ fn ghosts_and_veil_add_up_and_files_say_what_options_do() {
     };
     let options = ["--veil", "spencer", "--luminance", "scotopic", "--fov", "40", "--scatter", "0.2"];
     let both = glare("both.exr", &options);
-    let (ghosts, veil) = (glare("ghosts.exr", &[]), glare("veil.exr", &[&options[..], &["--lens", "none"]].concat()));
+    let ghosts = glare("ghosts.exr", &["--veil", "none"]);
+    let veil = glare("veil.exr", &[&options[..], &["--lens", "none"]].concat());
     for (both, (ghosts, veil)) in both.iter().zip(ghosts.iter().zip(&veil)) {
         assert!((0..3).all(|k| (both[k] - ghosts[k] - veil[k]).abs() <= 1e-6 * both[k]));
     }
@@ -149,12 +150,17 @@ fn what_no_veil_can_be_is_refused_by_name() {
         ("--veil cie", ["--fov", "field of view"]),
         ("--veil cie --fov 0.01", ["--fov", "0.1 to 179"]),
         ("--veil cie --fov 50 --age 130", ["--age", "0 to 120"]),
-        ("--age 60", ["--veil", "cie"]),
+        ("--lens none --age 60", ["--veil", "cie"]),
+        ("--preset v1/classic-prime --age 60", ["--veil", "cie"]),
+        ("--veil none --age 60", ["--veil", "cie"]),
+        ("--age 60", ["--age", "camera"]),
         ("--veil gaussian", ["--width", "needs it"]),
         ("--veil gaussian --width 0.1", ["strength", "all of it"]),
         ("--veil gaussian --width 0.1 --age 30 --scatter 0.1", ["--age", "gaussian"]),
         ("--veil gaussian --width 0.1 --scatter 0.1 --projection rectilinear", ["--projection", "plane"]),
-        ("--veil camera --strength 40", ["strength of 40", "all of it"]),
+        ("--strength 60", ["strength of 60", "all of it"]),
+        ("--veil camera --scatter 0.03 --strength 40", ["strength of 40", "all of it"]),
+        ("--lens none --veil camera --strength 40", ["strength of 40", "all of it"]),
         ("--veil cie --fov 50 --normalize minmax", ["--normalize none", "physical"]),
         ("--veil table --table table.csv", ["--table", "2"]),
         // Numbers that begin with a minus are numbers, and told by their range.

@@ -21,7 +21,15 @@ impl Session {
     }
 
     fn click(&mut self, name: &str) {
-        let at = self.told(name).part.center();
+        self.click_at(self.told(name).part.center());
+    }
+
+    /// Opens a row's list of bells, which the parameters of its bell follow.
+    fn open_bells(&mut self, row: u32) {
+        self.click_at(self.told(&format!("bell {row}")).part.left_center() + vec2(12.0, 0.0));
+    }
+
+    fn click_at(&mut self, at: Pos2) {
         self.time += 1.0;
         self.frame(vec![Event::PointerMoved(at)]);
         self.frame(vec![self.button(at, true)]);
@@ -74,11 +82,11 @@ fn bells_are_chosen_from_a_list_and_saved_with_their_parameters() {
     session.click("Bell");
     session.click("choose von-mises");
     session.click("Lens ghosts");
-    session.click("bell 2");
+    session.open_bells(2);
     session.click("choose sine-gaussian");
-    session.click("bell 1");
+    session.open_bells(1);
     session.click("choose cosine-squared");
-    session.click("bell 3");
+    session.open_bells(3);
     session.click("choose disc");
     let look = session.document().look.clone();
     let bells: Vec<_> = look.lens.ghosts().iter().map(|ghost| ghost.bell.to_string()).collect();
