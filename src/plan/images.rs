@@ -175,8 +175,8 @@ pub(super) fn too_many(groups: &[Group]) -> Error {
         ));
     }
     Error::Plan(format!(
-        "the ghosts of all pixels would need a series of too many modes: they have a {bell} of {:.3} x {:.3}; give a looser tolerance, \
-         --sources lights, or a lens with larger or softer ghosts{}",
+        "the ghosts of all pixels would need a series of too many modes, by a bell of {:.3} x {:.3} ({bell}); give a looser tolerance, \
+         --sources lights, a larger --size, or a lens with larger or softer ghosts{}",
         smallest.x,
         smallest.y,
         if let Bell::Disc(_) = bell { ", as an iris has" } else { "" }

@@ -30,10 +30,10 @@ impl Lens {
     /// The part of a light's luminous flux that returns as veil, 0 to 1: the sum of share × luminance of the tint, with
     /// Rec. 709 weights. A black spot in a wide white field reads about this (ISO 9358's veiling glare index).
     pub fn veiling_share(&self) -> f64 {
-        self.ghosts
-            .iter()
-            .map(|LensGhost { share, tint: [r, g, b], .. }| share * (0.2126 * r + 0.7152 * g + 0.0722 * b))
-            .sum()
+        let share =
+            |LensGhost { share, tint: [r, g, b], .. }: &LensGhost| share * (0.2126 * r + 0.7152 * g + 0.0722 * b);
+        // Not -0, which a sum of nothing is.
+        self.ghosts.iter().map(share).fold(0.0, |sum, share| sum + share)
     }
 }
 

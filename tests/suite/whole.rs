@@ -262,6 +262,7 @@ fn what_ghosts_carry_is_missing_where_it_came_from() {
             lens: LookLens::Own(look.lens.clone().into()),
             lights: LookLights::Photo(Vec::new().into()),
             unit: LengthUnit::Height,
+            veil: None,
             mix: Mix::Energy,
             find,
             ..vglare::look::Look::default()

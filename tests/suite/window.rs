@@ -22,7 +22,7 @@ fn opened(options: &[&str]) -> Desk {
     let mut desk = Desk::new();
     let (photo, look) = (desk.path("lamp.exr"), desk.path("lights.toml"));
     photo::write(&photo, &lamp(), &WriteOptions::default()).unwrap();
-    std::fs::write(&look, "version = 2\n[look]\nsources = \"lights\"\n").unwrap();
+    std::fs::write(&look, "version = 2\n[look]\nsources = \"lights\"\n[veil]\npsf = \"none\"\n").unwrap();
     desk.open(&photo, &[options, &["--scene", look.to_str().unwrap()]].concat());
     desk.to_window(&["windowsize"], &["1260", "1240"]);
     desk.rested();
