@@ -79,6 +79,10 @@ fn overscanned(photo: &mut Photo, part: f64) {
     (*width, *height) = (*width - 2 * beyond[0], *height - 2 * beyond[1]);
     (window.x, window.y) = (window.x - beyond[0] as i32, window.y - beyond[1] as i32);
     photo.source.overscan = beyond;
+    // Nobody else has it yet.
+    if let Some(rest) = photo.source.exr.as_mut().and_then(std::sync::Arc::get_mut) {
+        rest.overscan(beyond);
+    }
 }
 
 /// Gives the picture the shape of its pixels, where that is one that pixels have.

@@ -34,6 +34,7 @@ use std::fmt;
 
 use exr::block::chunk::Chunk;
 use exr::compression::Compression;
+use exr::math::Vec2;
 use exr::meta::attribute::{ChannelDescription, ChannelList, LineOrder, SampleType};
 use exr::meta::{BlockDescription, Headers};
 
@@ -61,6 +62,15 @@ pub(super) struct Rest {
 }
 
 impl Rest {
+    /// Leaves so many columns and rows at each edge out of the display window, which they do not fill.
+    pub fn overscan(&mut self, [columns, rows]: [u32; 2]) {
+        for header in &mut self.headers {
+            let display = &mut header.shared_attributes.display_window;
+            display.position = display.position + Vec2(columns as i32, rows as i32);
+            display.size = display.size - Vec2(2 * columns as usize, 2 * rows as usize);
+        }
+    }
+
     /// What a picture beside the photo, of the same frame, three colours and no alpha, takes over: the attributes of the
     /// photo's part and of its file. Not its other channels and parts, nor what is said of those or shows the photo.
     pub fn attributes_only(&self, primaries: Option<Primaries>) -> Self {
