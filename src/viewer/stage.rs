@@ -59,6 +59,9 @@ pub struct Times {
     pub veil: f64,
 }
 
+/// What the light of bright pixels goes by: which brightness, a threshold, a unit of lengths, and how clipped highlights shine.
+type Bright = (LightBy, f64, f64, Recover);
+
 /// What the picture on the device was made from.
 #[derive(Default)]
 struct Made {
@@ -69,7 +72,7 @@ struct Made {
     frame: Option<Frame>,
     picture: Option<(Settings, Shows)>,
     /// The light of the photo's bright pixels, for a threshold of some brightness and a unit of lengths.
-    bright: Option<((LightBy, f64, f64, Recover), [f64; 3])>,
+    bright: Option<(Bright, [f64; 3])>,
     /// The light of all pixels, once it was asked for, in the unit of its frame.
     raster: Option<((Knee, Recover), Arc<Raster>)>,
     /// How the photo's pixels shine.
