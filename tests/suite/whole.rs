@@ -213,7 +213,7 @@ fn bells_that_are_too_sharp_are_refused_by_name() {
         refused.to_string()
     };
     let reason = sharp(Bell::Paraboloid);
-    assert!(reason.contains("a paraboloid of 0.30") && reason.contains("a looser tolerance"), "{reason}");
+    assert!(reason.contains("0.302 (paraboloid)") && reason.contains("a looser tolerance"), "{reason}");
     let reason = sharp(Bell::Disc(Disc::new(0.1, 5, 0.0).unwrap()));
     assert!(reason.contains("a disc with blades has no series") && reason.contains("--sources lights"), "{reason}");
 }
