@@ -64,7 +64,7 @@ impl<'a> Found<'a> {
         let recovered = stages.time("recover", recovered);
         if look.strength != 0.0 && look.takes_photo() {
             // Their light, its moments, and the waves that a plan looks at.
-            limits::room(SOURCES + SOURCE * photo.pixels.len() as u64, "the ghosts of all pixels")?;
+            limits::room(SOURCES + SOURCE * photo.pixels.len() as u64, "planning the ghosts of all pixels")?;
         }
         let scene = stages.time("lights", || look.gather_knowing(&photo, &recovered, &frame, search));
         let mut warnings = photo.source.notes.clone();
