@@ -2,7 +2,7 @@
 //! many sides as the opening has blades.
 //!
 //! A polygon is the product of one logistic step for each side, a round iris one step of the radius squared: functions without a kink
-//! anywhere, so that their transforms fall exponentially, and a series of a few dozen harmonics has what a disc's smoothstep needs
+//! anywhere, so that their transforms fall exponentially, and a series of some hundred harmonics has what a disc's smoothstep needs
 //! thousands for.
 
 mod transform;

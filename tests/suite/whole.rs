@@ -16,7 +16,7 @@ use vglare::problem::{Images, Problem};
 use vglare::raster::Raster;
 use vglare::reference;
 use vglare::scene::{self, FindOptions, Ghost, Knee, Lens, LensGhost, Light};
-use vglare::series::{Bell, Disc};
+use vglare::series::{Bell, Disc, Iris};
 
 use crate::support::scenes::{Chance, every_pixel, positions};
 use crate::support::{long, on_backend, on_device};
@@ -113,6 +113,43 @@ fn photo(chance: &mut Chance, count: usize) -> Vec<[f32; 4]> {
     }
     pixels[0] = [-1.0, 0.5, -0.0, 1.0];
     pixels
+}
+
+/// Openings that are no mirror images of themselves, turned and stretched, on either side of an axis that is not in the middle.
+#[test]
+fn openings_of_every_pixel_are_what_as_many_lights_make() {
+    let iris = |edge, blades, rotation| Bell::Iris(Iris::new(edge, blades, rotation).unwrap());
+    let bells = [iris(0.12, 5, 17.0), iris(0.2, 3, -40.0), iris(0.25, 0, 0.0)];
+    let ghost = |(bell, along): (&Bell, f64)| LensGhost {
+        bell: bell.clone(),
+        along,
+        size: DVec2::new(0.5, 0.35),
+        tint: [1.0, 0.5, 0.25],
+        share: 0.01,
+    };
+    let frame = Frame::full(44, 30);
+    for (seed, tolerance) in [(1, 3e-2), (2, 1e-3)] {
+        let look = Look {
+            frame,
+            pixels: photo(&mut Chance::new(seed), frame.window.pixels()),
+            lens: bells.iter().zip([-0.7, 0.6, -1.2]).map(ghost).collect(),
+            axis: DVec2::new(0.2, -0.1),
+            others: Vec::new(),
+            tolerance,
+        };
+        let (problem, pixels) = (look.problem(), every_pixel(frame));
+        let truth = reference::direct_at(&look.ghosts(), &positions(frame, &pixels));
+        // What is left out of a tail is far below any tolerance.
+        let own = compare_in(&truth, &problem.truth(&pixels), [1e-300; 3]);
+        assert!(own.relative < 1e-8, "{:e}", own.relative);
+        let plan = plan::plan(&problem, &Request::new(tolerance)).expect("a series");
+        on_backend(Backend::Egl, |renderer| {
+            renderer.field.set_scene(&plan).expect("a spectrum");
+            let field = renderer.field.probe(frame, &pixels).expect("a field");
+            let measured = compare_in(&truth, &field, [1e-300; 3]).relative;
+            assert!(measured <= plan.predicted.total() && plan.predicted.total() <= tolerance, "{measured:e}");
+        });
+    }
 }
 
 #[test]
