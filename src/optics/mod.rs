@@ -1,16 +1,26 @@
 //! A lens as its maker knows it: surfaces, glasses, coatings.
 mod coating;
 mod error;
+mod first_order;
 mod glass;
+mod matrix;
+mod path;
 mod prescription;
 mod read;
+mod setup;
+mod system;
 mod thin_film;
 
 pub use coating::{Coating, DESIGN_NM};
 pub use error::{OpticsError, Result};
+pub use first_order::{FirstOrder, Pupil};
 pub use glass::{Dispersion, Glass, LINE_C, LINE_D, LINE_F, catalogue};
+pub use matrix::RayMatrix;
+pub use path::Path;
 pub use prescription::{Iris, MOST_SURFACES, Prescription, Setting, Surface};
 pub use read::LensFormat;
+pub use setup::Setup;
+pub use system::{OpticalSurface, System};
 pub use thin_film::{Layer, Polarised, Response, response};
 
 #[cfg(test)]
@@ -37,5 +47,13 @@ mod tests {
             settings: Vec::new(),
             notes: Vec::new(),
         }
+    }
+
+    /// The double Gauss of Tronnier, US 2,673,491, at its 100 mm, as it is in many a table of lenses.
+    pub(super) fn double_gauss() -> Prescription {
+        let table = "58.95 7.52 1.670 50.4\n169.66 0.24 1 50.4\n38.55 8.05 1.670 46\n81.54 6.55 1.699 46\n\
+            25.50 11.41 1 36\n0 9 0 34.2\n-28.99 2.36 1.603 34\n81.54 12.13 1.658 40\n-40.77 0.38 1 40\n\
+            874.13 6.44 1.717 40\n-79.46 72.228 1 40\n";
+        Prescription::parse(table.as_bytes(), "double-gauss.dat").unwrap()
     }
 }

@@ -189,7 +189,7 @@ thickness = { "1" = 4.0, "3" = 40 }
             ("semi_aperture = 12\n", "\n", "line 19: missing field `semi_aperture`"),
             ("abbe = 48.4", "glass = 'F2'", "surface 2 (line 19): it has a glass, and an index"),
             ("index = 1.67", "", "surface 2 (line 19): it has an Abbe number without an index"),
-            ("\"n-bk7\"", "\"n-bk9\"", "no glass is called \"n-bk9\"; the nearest are N-BK7"),
+            ("\"n-bk7\"", "\"n-bk77\"", "no glass is called \"n-bk77\"; the nearest are N-BK7"),
             ("\"mgf2\"", "\"gold\"", "lens.toml, line 8: invalid value: string \"gold\""),
             ("\"3\" = 40", "\"x\" = 40", "\"x\" is no surface's number"),
             ("\"3\" = 40", "\"9\" = 40", "there is no surface 9"),
