@@ -1,7 +1,10 @@
 //! A lens as its maker knows it: surfaces, glasses, coatings.
+mod clip;
 mod coating;
+mod colour;
 mod error;
 mod first_order;
+mod ghosts;
 mod glass;
 mod matrix;
 mod path;
@@ -11,9 +14,12 @@ mod setup;
 mod system;
 mod thin_film;
 
+pub use clip::{Clip, common_area};
 pub use coating::{Coating, DESIGN_NM};
+pub use colour::Sensitivity;
 pub use error::{OpticsError, Result};
 pub use first_order::{FirstOrder, Pupil};
+pub use ghosts::{GhostOptions, GhostPath, LensGhosts};
 pub use glass::{Dispersion, Glass, LINE_C, LINE_D, LINE_F, catalogue};
 pub use matrix::RayMatrix;
 pub use path::Path;
