@@ -153,7 +153,7 @@ impl GhostOptions {
 }
 
 /// The matrix of a path to the sensor, and the rims on it as circles in the pupil's plane.
-fn clipped(system: &System, path: &Path, indices: &[f64]) -> (RayMatrix, Vec<Clip>) {
+pub(super) fn clipped(system: &System, path: &Path, indices: &[f64]) -> (RayMatrix, Vec<Clip>) {
     let mut clips = Vec::new();
     let matrix = system.walk(&path.steps(), indices, |step, matrix| {
         // Where a rim is conjugate to the light itself, a circle without end passes or stops all of it.

@@ -11,8 +11,10 @@ mod path;
 mod prescription;
 mod read;
 mod setup;
+mod spot;
 mod system;
 mod thin_film;
+mod trace;
 
 pub use clip::{Clip, common_area};
 pub use coating::{Coating, DESIGN_NM};
@@ -26,8 +28,10 @@ pub use path::Path;
 pub use prescription::{Iris, MOST_SURFACES, Prescription, Setting, Surface};
 pub use read::LensFormat;
 pub use setup::Setup;
+pub use spot::Spot;
 pub use system::{OpticalSurface, System};
 pub use thin_film::{Layer, Polarised, Response, response};
+pub use trace::{Hit, Tracer, direction};
 
 #[cfg(test)]
 mod tests {
