@@ -21,6 +21,7 @@ use glam::DVec2;
 use ndarray::linalg::general_mat_mul;
 use ndarray::parallel::prelude::*;
 use ndarray::{Array2, ArrayView2, Axis, concatenate, s};
+use pulp::Arch;
 
 use crate::frame::Frame;
 use crate::veil::{Photo, Sources};
@@ -202,14 +203,20 @@ impl Raster {
     }
 }
 
-/// The sum of products, some of them at a time.
+/// The sum of products, some of them at a time, by the widest vectors that the processor has.
 fn product(light: &[f32], factors: &[f64]) -> f64 {
-    const LANES: usize = 8;
-    let mut sums = [0.0; LANES];
+    const LANES: usize = 16;
     let ((light, rest), (factors, others)) = (light.as_chunks::<LANES>(), factors.as_chunks::<LANES>());
-    for (light, factors) in light.iter().zip(factors) {
-        (0..LANES).for_each(|lane| sums[lane] += f64::from(light[lane]) * factors[lane]);
-    }
+    let sums = Arch::new().dispatch(
+        #[inline(always)]
+        || {
+            let mut sums = [0.0; LANES];
+            for (light, factors) in light.iter().zip(factors) {
+                (0..LANES).for_each(|lane| sums[lane] += f64::from(light[lane]) * factors[lane]);
+            }
+            sums
+        },
+    );
     let rest: f64 = rest.iter().zip(others).map(|(light, factor)| f64::from(*light) * factor).sum();
     sums.iter().sum::<f64>() + rest
 }

@@ -11,6 +11,7 @@ use std::f64::consts::PI;
 use std::sync::{Arc, OnceLock};
 
 use glam::DVec2;
+use pulp::Arch;
 
 use super::bell::{Modes, Shape, each_row};
 use super::disc::MOST_BLADES;
@@ -247,12 +248,18 @@ impl Shape for Iris {
             sides.iter().map(|side| xs.iter().map(|x| exponential(side.x * x / size.x / edge)).collect()).collect();
         let mut row = vec![0.0; xs.len()];
         for (index, y) in ys.iter().enumerate() {
-            row.fill(1.0);
-            for (side, across) in sides.iter().zip(&across) {
-                let down = exponential((side.y * y / size.y - apothem) / edge);
-                row.iter_mut().zip(across).for_each(|(row, across)| *row *= 1.0 + across * down);
-            }
-            row.iter_mut().for_each(|row| *row = (peak / *row).min(1.0));
+            // By the widest vectors that the processor has.
+            Arch::new().dispatch(
+                #[inline(always)]
+                || {
+                    row.fill(1.0);
+                    for (side, across) in sides.iter().zip(&across) {
+                        let down = exponential((side.y * y / size.y - apothem) / edge);
+                        row.iter_mut().zip(across).for_each(|(row, across)| *row *= 1.0 + across * down);
+                    }
+                    row.iter_mut().for_each(|row| *row = (peak / *row).min(1.0));
+                },
+            );
             visit(index, &row);
         }
     }

@@ -78,8 +78,12 @@ fn planar(photo: &Photo, value: impl Fn(f64) -> f64 + Sync, border: Border, pixe
     let margin = if border == Border::None { [0, 0] } else { [width, height] };
     // By offsets in columns and rows.
     let reach = [width + margin[0], height + margin[1]];
-    let at = |index: usize| value(((index % reach[0]) as f64).hypot((index / reach[0]) as f64));
-    let mut table: Vec<f64> = (0..reach[0] * reach[1]).into_par_iter().map(at).collect();
+    let mut table = vec![0.0; reach[0] * reach[1]];
+    table.par_chunks_exact_mut(reach[0]).enumerate().for_each(|(row, table)| {
+        // The square is a whole number that f64 holds.
+        let square = row * row;
+        table.iter_mut().enumerate().for_each(|(column, at)| *at = value(((column * column + square) as f64).sqrt()));
+    });
     table[0] = 0.0;
     let sources = sources(photo, border, margin);
     let columns = width + 2 * margin[0];
@@ -122,16 +126,16 @@ fn spherical(photo: &Photo, camera: &Camera, kernel: &Kernel, pixels: &[[usize; 
 /// What each pixel sends, borders included.
 fn sources(photo: &Photo, border: Border, margin: [usize; 2]) -> Vec<[f64; 3]> {
     let [width, height] = photo.size();
-    let mut sources = Vec::with_capacity((width + 2 * margin[0]) * (height + 2 * margin[1]));
-    for row in 0..height + 2 * margin[1] {
+    let columns = width + 2 * margin[0];
+    let mut sources = vec![[0.0; 3]; columns * (height + 2 * margin[1])];
+    sources.par_chunks_exact_mut(columns).enumerate().for_each(|(row, sources)| {
         let y = border.source(row as isize - margin[1] as isize, height);
-        for column in 0..width + 2 * margin[0] {
+        for (column, source) in sources.iter_mut().enumerate() {
             let x = border.source(column as isize - margin[0] as isize, width);
-            sources.push(std::array::from_fn(|channel| match (x, y) {
-                (Some(x), Some(y)) => light(photo.value(channel, x, y)),
-                _ => 0.0,
-            }));
+            if let (Some(x), Some(y)) = (x, y) {
+                *source = std::array::from_fn(|channel| light(photo.value(channel, x, y)));
+            }
         }
-    }
+    });
     sources
 }

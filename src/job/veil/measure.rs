@@ -82,22 +82,48 @@ pub(super) fn measured(
     Ok(worst)
 }
 
-/// A kernel by a table, for sums of millions: off by less than a millionth, but for the one place in a table at which cie has a
+/// A kernel by a table, for sums of millions: off by some millionths at most, but for the one place in a table at which cie has a
 /// kink.
+///
+/// Its places are evenly spread in each octave, so that the bits of an angle say between which two of them it lies.
 fn looked_up(kernel: &Kernel, [from, to]: [f64; 2]) -> Result<Kernel> {
-    const PLACES: usize = 1 << 14;
-    let (first, step) = ((0.9 * from).ln(), (1.2 * to / from).ln() / PLACES as f64);
-    let places: Vec<f64> = (0..=PLACES + 1).map(|place| kernel.at((first + step * place as f64).exp())).collect();
+    const PLACES: u32 = 11;
+    const REST: u32 = f64::MANTISSA_DIGITS - 1 - PLACES;
+    let first = (0.9 * from).to_bits() >> REST;
+    let last = (1.2 * to).to_bits() >> REST;
+    let places: Vec<f64> = (first..=last + 1).map(|place| kernel.at(f64::from_bits(place << REST))).collect();
     let (exact, mixture) = (kernel.clone(), kernel.mixture().clone());
     let at = move |angle: f64| {
-        let place = (angle.ln() - first) / step;
-        match place >= 0.0 && place < PLACES as f64 {
-            true => {
-                let (below, part) = (place as usize, place.fract());
-                places[below] + part * (places[below + 1] - places[below])
+        let place = (angle.to_bits() >> REST).wrapping_sub(first) as usize;
+        match places.get(place..place.wrapping_add(2)) {
+            Some(&[below, above]) => {
+                let part = (angle.to_bits() & ((1 << REST) - 1)) as f64 / (1u64 << REST) as f64;
+                below + part * (above - below)
             }
-            false => exact.at(angle),
+            _ => exact.at(angle),
         }
     };
     Kernel::new(at, mixture).map_err(failed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::psf::Psf;
+    use crate::veil::Mixture;
+
+    #[test]
+    fn a_kernel_that_is_looked_up_is_the_kernel() {
+        let camera = Psf::camera();
+        let none = Mixture { terms: Vec::new(), constant: 0.0, quadratic: 0.0 };
+        let kernel = Kernel::new(move |angle| camera.value(angle), none).unwrap();
+        let range = [1e-3, 2.5];
+        let table = looked_up(&kernel, range).unwrap();
+        // Ends, what lies between, and what lies beyond.
+        for step in 0..=10_000 {
+            let angle = 5e-4 * 1e4f64.powf(f64::from(step) / 1e4);
+            let (exact, looked_up) = (kernel.at(angle), table.at(angle));
+            assert!((looked_up / exact - 1.0).abs() < 2e-6, "{angle}: {looked_up} for {exact}");
+        }
+    }
 }

@@ -3,6 +3,8 @@
 use std::collections::HashMap;
 use std::rc::Rc;
 
+use rayon::prelude::*;
+
 use super::super::error::Error;
 use super::super::kernel::Gaussian;
 use super::super::simd::Real;
@@ -104,7 +106,13 @@ impl<'a> Chooser<'a> {
         for width in WIDTHS {
             for tail in 0..TAILS.len() {
                 for left_out in 0..=narrow {
-                    let deal = self.deal(width, tail, left_out);
+                    let places: Vec<Place> =
+                        (left_out..self.terms.len()).filter_map(|index| self.place(index, width, tail)).collect();
+                    // Whatever its small kernel, it would cost more.
+                    if best.as_ref().is_some_and(|best| operations(&places, 0) >= best.operations) {
+                        continue;
+                    }
+                    let deal = self.deal(places);
                     let meets = deal.bound <= self.tolerance * (1.0 - OWN_SHARE);
                     if meets && best.as_ref().is_none_or(|best| deal.operations < best.operations) {
                         best = Some(deal);
@@ -131,6 +139,7 @@ impl<'a> Chooser<'a> {
         (longest / FEWEST).checked_ilog2().unwrap_or(0) as usize
     }
 
+    /// The coarsest lattice on which a Gaussian is `width` pitches wide.
     fn place(&mut self, index: usize, width: f64, tail: usize) -> Option<Place> {
         let Gaussian { sigma, weight } = self.terms[index];
         let reach = self.reaches[index][tail];
@@ -154,17 +163,14 @@ impl<'a> Chooser<'a> {
             }
             let half = kernel(s, radius);
             let lattice = Lattice { pitch, kernel: &half };
-            let ranges = offsets.iter().map(|offset| lattice.range(*offset)).collect();
+            let ranges = offsets.par_iter().map(|offset| lattice.range(*offset)).collect();
             (Rc::new(half), Rc::new(ranges))
         });
         Some(Place { weight, level, half: half.clone(), ranges: ranges.clone() })
     }
 
-    /// The way in which a Gaussian lies on the coarsest lattice where it is `width` pitches wide, and the narrowest `left_out` are
-    /// left to the small kernel.
-    fn deal(&mut self, width: f64, tail: usize, left_out: usize) -> Deal {
-        let places: Vec<Place> =
-            (left_out..self.terms.len()).filter_map(|index| self.place(index, width, tail)).collect();
+    /// Gaussians on their lattices; what is missing near by is left to the small kernel.
+    fn deal(&self, places: Vec<Place>) -> Deal {
         let roundings = roundings(&places);
         let unit = roundings * <f32 as Real>::UNIT;
         let mut deal = Deal { places, square: 0, bound: 0.0, rounding: 0.0, roundings, operations: 0.0, distance: 0.0 };

@@ -31,17 +31,20 @@ fn spline(t: f64) -> f64 {
 /// saddle point ω + i n / s², where the exponential is exp(−n² / 2s²) by itself: so that far values, down to the smallest,
 /// are as exact relative to themselves as near ones, and positive.
 pub(crate) fn kernel(s: f64, radius: usize) -> Vec<f64> {
-    const NODES: usize = 96;
+    // On either side: the real part is even.
+    const NODES: usize = 48;
     let end = (PI * s).min(8.5);
-    let step = 2.0 * end / NODES as f64;
+    let step = end / NODES as f64;
+    let weight = |index: usize| if index == 0 || index == NODES { 1.0 } else { 2.0 };
+    let nodes: Vec<(f64, f64)> = (0..=NODES)
+        .map(|index| {
+            let t = step * index as f64;
+            (0.5 * t / s, weight(index) * (-0.5 * t * t).exp())
+        })
+        .collect();
     let tap = |n: usize| {
         let n = n as f64;
-        let node = |index: usize| {
-            let t = -end + step * index as f64;
-            let weight = if index == 0 || index == NODES { 0.5 } else { 1.0 };
-            weight * (-0.5 * t * t).exp() * inverse_spline(0.5 * t / s, 0.5 * n / (s * s))
-        };
-        let sum: f64 = (0..=NODES).map(node).sum();
+        let sum: f64 = nodes.iter().map(|(x, weight)| weight * inverse_spline(*x, 0.5 * n / (s * s))).sum();
         (-0.5 * (n / s).powi(2)).exp() * step / TAU.sqrt() * sum
     };
     (0..=radius).map(tap).collect()
@@ -52,11 +55,13 @@ fn inverse_spline(x: f64, y: f64) -> f64 {
     if x == 0.0 && y == 0.0 {
         return 1.0;
     }
-    // sin z = sin x cosh y + i cos x sinh y; by magnitude and angle, as the eighth power overflows nothing then.
-    let sine = (x.sin() * y.cosh(), x.cos() * y.sinh());
-    let magnitude = x.hypot(y) / sine.0.hypot(sine.1);
-    let angle = y.atan2(x) - sine.1.atan2(sine.0);
-    magnitude.powi(8) * (8.0 * angle).cos()
+    // sin z = (sin x + i cos x tanh y) cosh y; the ratio is squared three times.
+    let ((sin, cos), cosh) = (x.sin_cos(), y.cosh());
+    let sine = (sin, cos * y.tanh());
+    let square = (sine.0 * sine.0 + sine.1 * sine.1) * cosh;
+    let ratio = ((x * sine.0 + y * sine.1) / square, (y * sine.0 - x * sine.1) / square);
+    let (real, _) = (0..3).fold(ratio, |(re, im), _| (re * re - im * im, 2.0 * re * im));
+    real
 }
 
 /// A lattice of `pitch` pixels, and a kernel on it.

@@ -4,7 +4,7 @@ use egui::{ScrollArea, Ui};
 use glam::DVec2;
 
 use super::{colour, ghosts};
-use crate::choices::{Beyond, LightBy, Sources};
+use crate::choices::{Beyond, LightBy, LightShape, Sources};
 use crate::scene::{Found, Light, Recover};
 use crate::viewer::control::{self, Number, button, cell, choice, done_by, flag};
 use crate::viewer::document::Document;
@@ -207,6 +207,11 @@ fn find(ui: &mut Ui, document: &mut Document) {
     let about = "Marks the pixels that are light by now, before the photo is searched (K).";
     flag(ui, "Mask", about, &mut document.viewing.mask, false);
     MERGE.show(ui, &mut find.merge, opened.merge);
+    let (mut kept, by_default) = (find.shape == LightShape::Kept, opened.shape == LightShape::Kept);
+    let about = "Makes several lights of one that is long, bent or hollow, so that it keeps its shape.";
+    if flag(ui, "Keep shapes", about, &mut kept, by_default) {
+        find.shape = if kept { LightShape::Kept } else { LightShape::Ball };
+    }
     let mut most = find.max_lights as f64;
     MOST.show(ui, &mut most, opened.max_lights as f64);
     if most != find.max_lights as f64 {

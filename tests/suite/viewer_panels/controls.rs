@@ -51,7 +51,7 @@ fn changed(session: &mut Session) -> (Look, Viewing) {
         by: LightBy::Luminance,
         threshold: Some(3.0),
         merge: 0.5,
-        shape: LightShape::Kept,
+        shape: LightShape::Ball,
         max_lights: 3,
         beyond: Beyond::Drop,
         firefly_limit: 100.0,
