@@ -1,0 +1,389 @@
+//! Ghosts by matrices (Lee and Eisemann, "Practical real-time lens-flare rendering", 2013; Hullin et al., "Physically-based
+//! real-time lens flare rendering", 2011): every pair of surfaces reflects light twice towards the sensor, and paraxially
+//! the place and the size of that image are linear in the light's direction and in the pupil.
+//!
+//! A ray of a distant light meets the plane of the entrance pupil at p, in mm, and has the tangent t of the light's angle.
+//! Along a path, it is at the height A (p − z t) + B t on the sensor, where the pupil is at z and (A B; C D) is the path's
+//! matrix from the first vertex to the sensor; at a rim on the way, in the same form by the matrix to that rim.
+
+use serde::Serialize;
+
+use super::clip::{Clip, common_area, that_bite};
+use super::colour::Sensitivity;
+use super::error::Result;
+use super::matrix::RayMatrix;
+use super::path::Path;
+use super::system::System;
+
+/// Which ghosts are wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct GhostOptions {
+    /// The angle from the axis, in degrees, below 90, up to which lights shine: rims that bite beyond it only are left out.
+    /// None for the corner of the sensor.
+    pub half_field: Option<f64>,
+    /// The least share of the direct light in any colour at which a path of four reflections counts; none for none of them.
+    pub four_bounces: Option<f64>,
+}
+
+/// What a lens makes of a distant light besides its image.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LensGhosts {
+    /// Where the light's image is on the sensor, in mm for a tangent of 1 of its angle from the axis.
+    pub image_per_tangent: f64,
+    /// The rims that bound the light of that image, the smallest first.
+    pub clips: Vec<Clip>,
+    /// The wavelengths, in nm, at which red, green and blue rays are taken.
+    pub wavelengths: [f64; 3],
+    /// The ghosts, by their irradiance on the sensor, the brightest first.
+    pub ghosts: Vec<GhostPath>,
+}
+
+/// A ghost: the image of a distant light by one path of reflections. Colours are red, green and blue of linear Rec. 709.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct GhostPath {
+    /// The surfaces at which it is reflected, in the light's order, numbered from 1: `[b, a]` of a pair a < b.
+    pub reflections: Vec<usize>,
+    /// Where its centre is (that of rays through the pupil's centre), as a multiple of where the light's own image is;
+    /// negative on the other side of the axis.
+    pub magnification: [f64; 3],
+    /// Millimetres on the sensor of a millimetre of the entrance pupil; negative where it is upside down.
+    pub scale: [f64; 3],
+    /// The radius in mm on the sensor, of a light on the axis.
+    pub radius_mm: [f64; 3],
+    /// The part of the light of the image on the axis that the ghost has.
+    pub share: [f64; 3],
+    /// Where it is in focus, in mm from the sensor, positive behind it; none where its rays are parallel.
+    pub focus_mm: Option<f64>,
+    /// The rims that bound its light in the entrance pupil's plane, the smallest first. Its image is what they have in common,
+    /// times [`GhostPath::scale`], from its centre.
+    pub clips: Vec<Clip>,
+}
+
+impl GhostPath {
+    /// The share in each colour, the largest being 1; black where there is none.
+    pub fn tint(&self) -> [f64; 3] {
+        let largest = self.share.into_iter().fold(0.0, f64::max);
+        if largest > 0.0 { self.share.map(|share| share / largest) } else { [0.0; 3] }
+    }
+
+    /// What rims leave of the ghost of a light at the tangent `tangent`, of that of a light on the axis: from 0, usually to 1.
+    pub fn vignetting(&self, tangent: f64) -> f64 {
+        common_area(&self.clips, tangent) / common_area(&self.clips, 0.0)
+    }
+
+    /// The circle on the sensor, in mm along the line through the axis, by which a rim cuts the ghost's green of a light at
+    /// the tangent `tangent`, whose own image is at `image`: its centre and its radius.
+    pub fn on_sensor(&self, clip: &Clip, tangent: f64, image: f64) -> (f64, f64) {
+        let [_, scale, _] = self.scale;
+        let [_, magnification, _] = self.magnification;
+        (magnification * image + scale * clip.center_per_tangent * tangent, scale.abs() * clip.radius)
+    }
+
+    fn mean_share(&self) -> f64 {
+        self.share.iter().sum::<f64>() / 3.0
+    }
+}
+
+/// What all ghosts of a lens have in common.
+struct Survey<'a> {
+    system: &'a System,
+    observer: Sensitivity,
+    /// Reflectance of each surface at each of the observer's wavelengths, along the axis.
+    reflectances: Vec<Vec<f64>>,
+    /// The light that comes straight through, at each wavelength.
+    direct: Vec<f64>,
+    /// The direct image's area in the pupil, on the axis.
+    area: f64,
+    image_per_tangent: f64,
+    /// The tangent up to which rims count.
+    tangent: f64,
+    /// Indices at the setup's wavelength, and at those of the colours.
+    indices: Vec<f64>,
+    colours: [Vec<f64>; 3],
+}
+
+impl System {
+    /// All ghosts of two reflections, and those of four that are strong enough.
+    ///
+    /// # Errors
+    ///
+    /// A field in [`GhostOptions`] that is not from 0 to below 90°, or a share that is not above 0.
+    pub fn ghosts(&self, options: &GhostOptions) -> Result<LensGhosts> {
+        let half_field = options.half_field.unwrap_or(self.first_order().half_field);
+        options.check(half_field)?;
+        let direct = Path::direct(self);
+        let indices = self.indices(self.setup().wavelength);
+        let (matrix, clips) = clipped(self, &direct, &indices);
+        let tangent = half_field.to_radians().tan();
+        let clips = that_bite(clips, tangent);
+        let survey = Survey::of(self, common_area(&clips, 0.0), self.height_per_tangent(&matrix), tangent, indices);
+        let mut ghosts: Vec<GhostPath> =
+            survey.pairs().into_iter().map(|pair| survey.ghost(&pair)).collect::<Result<_>>()?;
+        if let Some(least) = options.four_bounces {
+            let strong = |ghost: &GhostPath| ghost.share.into_iter().any(|share| share >= least);
+            let fours: Vec<GhostPath> =
+                survey.fours(least).into_iter().map(|four| survey.ghost(&four)).collect::<Result<_>>()?;
+            ghosts.extend(fours.into_iter().filter(strong));
+        }
+        // A focused ghost is no smaller than its diffraction.
+        let airy = 1.22 * self.setup().wavelength * 1e-6 * self.first_order().f_number;
+        let irradiance = |ghost: &GhostPath| ghost.mean_share() / (ghost.radius_mm[1].powi(2) + airy * airy);
+        ghosts.sort_by(|a, b| irradiance(b).total_cmp(&irradiance(a)));
+        let (image_per_tangent, wavelengths) = (survey.image_per_tangent, survey.observer.centres);
+        Ok(LensGhosts { image_per_tangent, clips, wavelengths, ghosts })
+    }
+
+    /// The height behind a matrix from the first vertex, in mm for a tangent of 1, of a ray through the pupil's centre.
+    fn height_per_tangent(&self, matrix: &RayMatrix) -> f64 {
+        matrix.b - matrix.a * self.first_order().entrance_pupil.z
+    }
+}
+
+impl GhostOptions {
+    fn check(&self, half_field: f64) -> Result<()> {
+        let fault = |reason: String| Err(super::OpticsError::Setup(reason));
+        if !(0.0..90.0).contains(&half_field) {
+            return fault(format!("a half field of {half_field}° is not from 0 to below 90°"));
+        }
+        match self.four_bounces {
+            Some(least) if !(least.is_finite() && least > 0.0) => fault(format!("a share of {least} is not above 0")),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The matrix of a path to the sensor, and the rims on it as circles in the pupil's plane.
+pub(super) fn clipped(system: &System, path: &Path, indices: &[f64]) -> (RayMatrix, Vec<Clip>) {
+    let mut clips = Vec::new();
+    let matrix = system.walk(&path.steps(), indices, |step, matrix| {
+        // Where a rim is conjugate to the light itself, a circle without end passes or stops all of it.
+        let a = if matrix.a.abs() < 1e-12 { 1e-12 } else { matrix.a };
+        let radius = system.surfaces()[step.surface].semi_aperture / a.abs();
+        clips.push(Clip { center_per_tangent: -system.height_per_tangent(matrix) / a, radius });
+    });
+    (matrix, clips)
+}
+
+impl<'a> Survey<'a> {
+    fn of(system: &'a System, area: f64, image_per_tangent: f64, tangent: f64, indices: Vec<f64>) -> Self {
+        let observer = Sensitivity::standard_observer();
+        let media: Vec<_> = observer.wavelengths.iter().map(|&wavelength| system.indices(wavelength)).collect();
+        let surfaces = system.surfaces().iter().enumerate();
+        let reflectances: Vec<Vec<f64>> = surfaces
+            .map(|(k, surface)| {
+                let at =
+                    |(media, &wavelength): (&Vec<f64>, &f64)| surface.reflectance(media[k], media[k + 1], wavelength);
+                media.iter().zip(&observer.wavelengths).map(at).collect()
+            })
+            .collect();
+        let colours = observer.centres.map(|wavelength| system.indices(wavelength));
+        let mut survey = Self {
+            system,
+            observer,
+            reflectances,
+            direct: Vec::new(),
+            area,
+            image_per_tangent,
+            tangent,
+            indices,
+            colours,
+        };
+        survey.direct = survey.spectrum(&Path::direct(system));
+        survey
+    }
+
+    /// The part of the light that a path leaves at each wavelength, along the axis.
+    fn spectrum(&self, path: &Path) -> Vec<f64> {
+        let mut spectrum = vec![1.0; self.observer.wavelengths.len()];
+        for step in path.steps() {
+            for (power, reflectance) in spectrum.iter_mut().zip(&self.reflectances[step.surface]) {
+                *power *= if step.reflects { *reflectance } else { 1.0 - reflectance };
+            }
+        }
+        spectrum
+    }
+
+    /// The largest reflectance of each surface that reflects at all, by its number.
+    fn mirrors(&self) -> Vec<(usize, f64)> {
+        let largest = |of: &Vec<f64>| of.iter().copied().fold(0.0, f64::max);
+        // Less is rounding between equal media.
+        (1..).zip(self.reflectances.iter().map(largest)).filter(|&(_, reflectance)| reflectance > 1e-12).collect()
+    }
+
+    /// The reflections of all pairs.
+    fn pairs(&self) -> Vec<[usize; 2]> {
+        let mirrors = self.mirrors();
+        let pairs = mirrors.iter().enumerate().flat_map(|(k, &(b, _))| mirrors[..k].iter().map(move |&(a, _)| [b, a]));
+        pairs.collect()
+    }
+
+    /// The reflections of all paths of four whose share can be so large.
+    fn fours(&self, least: f64) -> Vec<[usize; 4]> {
+        let mirrors = self.mirrors();
+        // Light passes every surface that it is reflected by as well, as the direct light does; of the pupil, a ghost
+        // has at most what the first rim lets in.
+        let first = self.system.surfaces().first().map_or(0.0, |surface| surface.semi_aperture);
+        let most = self.observer.most() * (std::f64::consts::PI * first * first / self.area).max(1.0);
+        let mut fours = Vec::new();
+        for (k, &(b, at_b)) in mirrors.iter().enumerate() {
+            for (l, &(a, at_a)) in mirrors[..k].iter().enumerate() {
+                for (m, &(d, at_d)) in mirrors.iter().enumerate().skip(l + 1) {
+                    let strong = mirrors[..m].iter().filter(|&&(_, at_c)| most * at_a * at_b * at_c * at_d >= least);
+                    fours.extend(strong.map(|&(c, _)| [b, a, d, c]));
+                }
+            }
+        }
+        fours
+    }
+
+    fn ghost(&self, reflections: &[usize]) -> Result<GhostPath> {
+        let path = Path::new(self.system, reflections)?;
+        let (matrix, clips) = clipped(self.system, &path, &self.indices);
+        let clips = that_bite(clips, self.tangent);
+        let axial = clips.first().map_or(0.0, |clip| clip.radius);
+        let by_colour = self.colours.each_ref().map(|indices| self.system.matrix(&path, indices));
+        let area = std::f64::consts::PI * axial * axial / self.area;
+        let share = self.observer.relative(&self.spectrum(&path), &self.direct).map(|part| part * area);
+        let focus = -self.indices.last().copied().unwrap_or(1.0) * matrix.a / matrix.c;
+        Ok(GhostPath {
+            reflections: path.reflections(),
+            magnification: by_colour.map(|matrix| self.system.height_per_tangent(&matrix) / self.image_per_tangent),
+            scale: by_colour.map(|matrix| matrix.a),
+            radius_mm: by_colour.map(|matrix| matrix.a.abs() * axial),
+            share,
+            focus_mm: Some(focus).filter(|focus| focus.is_finite()),
+            clips,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{double_gauss, singlet};
+    use super::super::{Coating, Glass, Prescription, Setup, Surface};
+    use super::*;
+
+    const INDEX: f64 = 1.5;
+    /// Of one surface.
+    const BARE: f64 = 0.04;
+
+    fn ghosts(lens: &Prescription, options: GhostOptions) -> LensGhosts {
+        System::new(lens, &Setup::default()).unwrap().ghosts(&options).unwrap()
+    }
+
+    fn plate(thickness: f64, gap: Option<f64>) -> [Surface; 2] {
+        let glass = Glass::model(INDEX, None);
+        [Surface { glass, ..Surface::plane(Some(thickness), 10.0) }, Surface::plane(gap, 10.0)]
+    }
+
+    /// A thin lens of 50 mm with the stop in it, whose surfaces do not reflect to each other's like.
+    fn thin(gap: Option<f64>) -> [Surface; 2] {
+        let front = Surface { radius: Some(50.0), stop: true, ..Surface::plane(Some(0.0), 5.0) };
+        let back = Surface { radius: Some(-50.0), ..Surface::plane(gap, 9.0) };
+        [Surface { glass: Glass::model(INDEX, None), ..front }, back]
+    }
+
+    fn lens(parts: [[Surface; 2]; 2]) -> Prescription {
+        Prescription { surfaces: parts.into_iter().flatten().collect(), ..singlet() }
+    }
+
+    fn of_pair(ghosts: &LensGhosts, pair: [usize; 2]) -> &GhostPath {
+        ghosts.ghosts.iter().find(|ghost| ghost.reflections == pair).unwrap()
+    }
+
+    #[test]
+    fn a_plate_before_the_lens_makes_a_second_image_over_the_first() {
+        let found = ghosts(&lens([plate(3.0, Some(20.0)), thin(None)]), GhostOptions::default());
+        let ghost = of_pair(&found, [2, 1]);
+        for c in 0..3 {
+            assert!((ghost.magnification[c] - 1.0).abs() < 1e-12);
+            assert!(ghost.radius_mm[c] < 1e-12);
+            assert!((ghost.share[c] - BARE * BARE).abs() < 1e-15, "{:?}", ghost.share);
+        }
+        assert!(ghost.focus_mm.unwrap().abs() < 1e-10);
+        assert!(ghost.tint().iter().all(|part| (part - 1.0).abs() < 1e-12), "{:?}", ghost.tint());
+    }
+
+    #[test]
+    fn a_plate_behind_the_lens_focuses_its_ghost_before_the_sensor() {
+        let (thickness, gap) = (2.0, 10.0);
+        let found = ghosts(&lens([thin(Some(gap)), plate(thickness, None)]), GhostOptions::default());
+        let ghost = of_pair(&found, [4, 3]);
+        // Light goes through the plate's thickness twice more, which is so much in air.
+        let further = 2.0 * thickness / INDEX;
+        assert!((ghost.focus_mm.unwrap() + further).abs() < 1e-10, "{ghost:?}");
+        assert!((ghost.radius_mm[1] - further * 5.0 / 50.0).abs() < 1e-12, "{ghost:?}");
+        assert!((ghost.magnification[1] - (1.0 + further / 50.0)).abs() < 1e-12);
+        assert!((ghost.share[1] - BARE * BARE).abs() < 1e-15);
+        assert!((found.image_per_tangent - 50.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn every_pair_of_surfaces_makes_a_ghost_and_the_stop_none() {
+        let found = ghosts(&double_gauss(), GhostOptions::default());
+        assert_eq!(found.ghosts.len(), 45);
+        assert!(found.ghosts.iter().all(|ghost| !ghost.reflections.contains(&6)));
+        let irradiance = |ghost: &GhostPath| ghost.mean_share() / (ghost.radius_mm[1].powi(2) + 1e-5);
+        assert!(irradiance(&found.ghosts[0]) > irradiance(&found.ghosts[44]));
+        let sum: f64 = found.ghosts.iter().map(|ghost| ghost.share[1]).sum();
+        assert!((0.005..0.06).contains(&sum), "ten bare surfaces: {sum}");
+    }
+
+    #[test]
+    fn coatings_take_light_from_ghosts_and_tint_them() {
+        let of = |coating: Coating| {
+            let lens = Prescription { coating, ..double_gauss() };
+            let found = ghosts(&lens, GhostOptions::default());
+            let sum = |c: usize| found.ghosts.iter().map(|ghost| ghost.share[c]).sum::<f64>();
+            [sum(0), sum(1), sum(2)]
+        };
+        let (none, mgf2, multi) = (of(Coating::None), of(Coating::MgF2), of(Coating::Multi));
+        assert!(none[1] > 8.0 * mgf2[1] && mgf2[1] > 5.0 * multi[1], "{none:?} {mgf2:?} {multi:?}");
+        // Bare glass without dispersion reflects all colours alike; a quarter wave at 550 nm least of green.
+        assert!((none[0] - none[2]).abs() < 1e-12);
+        assert!(mgf2[1] < 0.95 * mgf2[0] && mgf2[1] < 0.8 * mgf2[2], "{mgf2:?}");
+    }
+
+    #[test]
+    fn a_rim_cuts_a_ghost_as_its_light_leaves_the_axis() {
+        let wide = GhostOptions { half_field: Some(20.0), ..GhostOptions::default() };
+        let found = ghosts(&double_gauss(), wide);
+        let tangent = 20.0_f64.to_radians().tan();
+        let cut = found.ghosts.iter().filter(|ghost| ghost.vignetting(tangent) < 0.5).count();
+        assert!(cut > 10, "{cut}");
+        for ghost in &found.ghosts {
+            assert!((ghost.vignetting(0.0) - 1.0).abs() < 1e-12);
+            let mirrored = ghost.vignetting(-tangent);
+            assert!((mirrored - ghost.vignetting(tangent)).abs() < 1e-12, "the lens is round");
+        }
+        let narrow = ghosts(&double_gauss(), GhostOptions { half_field: Some(0.0), ..wide });
+        assert!(narrow.ghosts.iter().all(|ghost| ghost.clips.len() == 1));
+    }
+
+    #[test]
+    fn paths_of_four_reflections_are_those_that_are_strong_enough() {
+        let lens = lens([plate(3.0, Some(20.0)), thin(None)]);
+        let four = |least| ghosts(&lens, GhostOptions { four_bounces: Some(least), ..GhostOptions::default() });
+        let count = |found: &LensGhosts| found.ghosts.iter().filter(|ghost| ghost.reflections.len() == 4).count();
+        // Every [b, a, d, c] with a < b, a < d, c < d of four surfaces.
+        let possible = (1..=4_i32).flat_map(|a| (a + 1..=4).flat_map(move |_| (a + 1..=4).map(|d| d - 1))).sum::<i32>();
+        let all = four(1e-30);
+        assert_eq!(count(&all), possible as usize);
+        let least = 0.9 * BARE.powi(4);
+        let strong = all.ghosts.iter().filter(|ghost| ghost.reflections.len() == 4 && ghost.share[1] >= least).count();
+        assert_eq!(count(&four(least)), strong);
+        assert!(strong > 0 && count(&four(1.0)) == 0);
+        // Twice back and forth in the plate.
+        let twice = all.ghosts.iter().find(|ghost| ghost.reflections == [2, 1, 2, 1]).unwrap();
+        assert!((twice.share[1] - BARE.powi(4)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn options_that_mean_nothing_are_refused() {
+        let system = System::new(&singlet(), &Setup::default()).unwrap();
+        for half_field in [90.0, 179.0, -1.0, f64::NAN] {
+            assert!(system.ghosts(&GhostOptions { half_field: Some(half_field), four_bounces: None }).is_err());
+        }
+        assert!(system.ghosts(&GhostOptions { half_field: None, four_bounces: Some(0.0) }).is_err());
+    }
+}
