@@ -68,6 +68,23 @@ pub enum Error {
         known: Vec<String>,
     },
 
+    /// No real lens has this name, and no preset.
+    #[error(
+        "no lens is called {name:?}, and there is no such file; there are {}, and those of vglare presets{}",
+        known.join(", "),
+        meant(name, known)
+    )]
+    UnknownLens {
+        /// The name that was given.
+        name: String,
+        /// The names of real lenses.
+        known: Vec<String>,
+    },
+
+    /// A lens cannot be read, set up or traced.
+    #[error(transparent)]
+    Optics(#[from] crate::optics::OpticsError),
+
     /// f32 cannot be as exact as asked in this scene.
     #[error(
         "{}; ask for --tolerance {}, or for whatever can be had by --allow-floor",

@@ -62,6 +62,7 @@ pub mod laboratory;
 mod limits;
 pub mod look;
 pub mod measure;
+pub mod optics;
 #[cfg(feature = "terminal")]
 pub mod options;
 pub mod panics;

@@ -3,7 +3,7 @@
 use super::{Accuracy, Look, LookLens, LookLights, Shared, Veil};
 use crate::choices::{LengthUnit, Mix, Sources};
 use crate::scene::presets::{self, DEFAULT_PRESET, NO_LENS};
-use crate::scene::{AccuracySection, FindOptions, FindSection, LookSection, SceneFile, VeilSection, Version};
+use crate::scene::{AccuracySection, FindOptions, FindSection, LookSection, Optical, SceneFile, VeilSection, Version};
 use crate::{Error, Result};
 
 impl Look {
@@ -35,6 +35,7 @@ impl Look {
         };
         let lens = match scene.preset {
             Some(name) => LookLens::preset(&name)?,
+            None if scene.optics.is_some() => LookLens::Optical(Optical::new(scene.optics.unwrap_or_default())?),
             None if scene.lens_ghosts.is_empty() => {
                 LookLens::Preset(presets::named_in(scene.version, DEFAULT_PRESET)?.into())
             }
@@ -94,8 +95,13 @@ impl Look {
         let Self {
             description, lens, unit, fov, axis, size, tint, lights, ghosts, find, strength, veil, mix, normalize, accuracy,
         } = self;
+        let mut optics = None;
         let (preset, lens_ghosts) = match lens {
             LookLens::Preset(lens) => (Some(lens.name.clone()), Vec::new()),
+            LookLens::Optical(optical) => {
+                optics = Some(optical.section().clone());
+                (None, Vec::new())
+            }
             // Ghosts in whose place there is a veil.
             LookLens::File(_, lens) if self.lens_ghosts().len() < lens.ghosts.len() => {
                 (Some(NO_LENS.to_owned()), Vec::new())
@@ -118,6 +124,7 @@ impl Look {
             version: Version::Two,
             description: description.clone(),
             preset,
+            optics,
             axis: Some(*axis),
             period,
             degree,

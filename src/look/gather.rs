@@ -83,7 +83,7 @@ impl Look {
         let known = search.filter(fits).map(|search| search.found);
         let found = self.searches().then(|| known.unwrap_or_else(|| self.find(photo, recovered, frame)));
         let images = self.images(|| self.raster(photo, recovered, frame));
-        Gathered { images, recovery: recovered.told.clone(), ..self.gather_from(found) }
+        Gathered { images, recovery: recovered.told.clone(), ..self.gather_from(found, frame) }
     }
 
     /// How the pixels of a photo shine, of which all that glares is made: as they are shown, but for those that are clipped.
@@ -114,15 +114,19 @@ impl Look {
 
     /// The ghosts of all pixels of a photo, as [`Look::raster`] gives it; none where others shine.
     pub fn images(&self, raster: impl FnOnce() -> Arc<Raster>) -> Option<Arc<Images>> {
-        let of = |raster| Arc::new(Images::new(raster, self.lens_ghosts(), self.axis, self.size, self.tint));
+        let of = |raster: Arc<Raster>| {
+            let look = self.fitted(&raster.frame());
+            Arc::new(Images::new(raster, look.lens_ghosts(), self.axis, self.size, self.tint))
+        };
         self.takes_photo().then(|| of(raster()))
     }
 
-    /// What glares in a photo of which `found` is known.
-    pub fn gather_from(&self, found: Option<Found>) -> Gathered {
+    /// What glares in a photo of which `found` is known, on its frame.
+    pub fn gather_from(&self, found: Option<Found>, frame: &Frame) -> Gathered {
+        let look = self.fitted(frame);
         let lights = self.lights(found.as_ref().map_or(&[], |found| &found.lights)).into_owned();
-        let lens = (!lights.is_empty() || self.takes_photo()).then(|| self.lens());
-        Gathered { ghosts: self.ghosts(&lights).into(), found, lights, lens, images: None, recovery: None }
+        let lens = (!lights.is_empty() || self.takes_photo()).then(|| look.lens());
+        Gathered { ghosts: look.ghosts(&lights).into(), found, lights, lens, images: None, recovery: None }
     }
 
     /// Whether a photo is to be searched: for lights, or for the threshold that tells them from the rest.
@@ -147,7 +151,8 @@ impl Look {
         scene::find_shining(&photo.pixels, shining, frame, Emission::of(photo), &self.find)
     }
 
-    /// The ghosts that the lens makes of `lights`, then those that no light makes, in the look's size and tint.
+    /// The ghosts that the lens makes of `lights`, then those that no light makes, in the look's size and tint; those of a lens that is
+    /// known by its surfaces on the picture that it was fitted to.
     pub fn ghosts(&self, lights: &[Light]) -> Vec<Ghost> {
         let mut ghosts = match self.lens_ghosts() {
             [] => Vec::new(),

@@ -15,7 +15,7 @@ use glam::DVec2;
 use crate::choices::{Evaluator, LengthUnit, Mix, Normalize, Sources};
 use crate::frame::Frame;
 use crate::scene::presets::{self, DEFAULT_PRESET};
-use crate::scene::{FindOptions, Ghost, Goal, Lens, LensGhost, LensVeil, Light};
+use crate::scene::{FindOptions, Ghost, Goal, Lens, LensGhost, LensVeil, Light, NamedLens, Optical};
 use crate::{Error, Result};
 
 pub use gather::{Gathered, Search};
@@ -65,6 +65,8 @@ pub enum LookLens {
     Preset(Arc<Lens>),
     /// That of a lens file.
     File(PathBuf, Arc<Lens>),
+    /// One that is known by its surfaces; its table is that of the picture that it was fitted to last ([`Look::fitted`]).
+    Optical(Optical),
     /// A table of the look's own; never empty.
     Own(Shared<LensGhost>),
 }
@@ -122,6 +124,16 @@ impl Default for Look {
     }
 }
 
+impl From<NamedLens> for LookLens {
+    fn from(lens: NamedLens) -> Self {
+        match lens {
+            NamedLens::Preset(lens) => Self::Preset(lens.into()),
+            NamedLens::Table(path, lens) => Self::File(path, lens.into()),
+            NamedLens::Optical(optical) => Self::Optical(optical),
+        }
+    }
+}
+
 impl LookLens {
     /// The preset that is called `name`.
     ///
@@ -135,6 +147,7 @@ impl LookLens {
     pub fn ghosts(&self) -> &[LensGhost] {
         match self {
             Self::Preset(lens) | Self::File(_, lens) => &lens.ghosts,
+            Self::Optical(optical) => &optical.lens().ghosts,
             Self::Own(ghosts) => ghosts,
         }
     }
@@ -143,6 +156,7 @@ impl LookLens {
     pub fn veil(&self) -> Option<&LensVeil> {
         match self {
             Self::Preset(lens) | Self::File(_, lens) => lens.veil.as_ref(),
+            Self::Optical(optical) => optical.lens().veil.as_ref(),
             Self::Own(_) => None,
         }
     }
@@ -153,11 +167,23 @@ impl Look {
     pub fn lens(&self) -> Lens {
         match &self.lens {
             LookLens::Preset(lens) | LookLens::File(_, lens) => Lens::clone(lens),
+            LookLens::Optical(optical) => Lens::clone(optical.lens()),
             LookLens::Own(ghosts) => {
                 let (name, description) = ("scene file".to_owned(), self.description.clone());
                 Lens { name, description, ghosts: ghosts.to_vec(), veil: None }
             }
         }
+    }
+
+    /// The same on a picture's frame, as [`Look::frame`] gives it: a lens that is known by its surfaces has its ghosts in millimetres, and
+    /// how many of those are a unit of lengths the picture's shape tells.
+    pub fn fitted(&self, frame: &Frame) -> Cow<'_, Self> {
+        let LookLens::Optical(optical) = &self.lens else { return Cow::Borrowed(self) };
+        let fitted = optical.fitted(frame);
+        if Arc::ptr_eq(fitted.lens(), optical.lens()) {
+            return Cow::Borrowed(self);
+        }
+        Cow::Owned(Self { lens: LookLens::Optical(fitted), ..self.clone() })
     }
 
     /// What the lens makes of a light: nothing where its ghosts stand for a veil, and there is one.

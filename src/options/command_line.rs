@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use crate::choices::Sources;
 use crate::look::{Accuracy, Look, LookLens, LookLights, Shared, Veil};
-use crate::scene::{FindOptions, Goal, NO_VEIL, VeilSection};
+use crate::scene::{FindOptions, Goal, NO_VEIL, OpticsSection, VeilSection};
 use crate::{Error, Result};
 
 /// The `vglare apply` that lays `look` over `photo` and writes `output`, quoted for a POSIX shell: with an option for
@@ -69,6 +69,7 @@ fn options(look: &Look) -> Result<Vec<String>> {
     match lens {
         LookLens::File(path, _) => options.add("--lens", word(path)?),
         LookLens::Preset(preset) if *lens != default.lens => options.add("--preset", &preset.name),
+        LookLens::Optical(optical) => of_optics(&mut options, optical.section())?,
         LookLens::Preset(_) | LookLens::Own(_) => {}
     }
     // A lens brings its veil along.
@@ -113,6 +114,22 @@ fn options(look: &Look) -> Result<Vec<String>> {
     options.given("--period", period, pair);
     options.given("--evaluator", evaluator, |evaluator| evaluator.to_string());
     Ok(options.0)
+}
+
+/// The options for a lens that is known by its surfaces.
+fn of_optics(options: &mut Options, section: &OpticsSection) -> Result<()> {
+    let OpticsSection { lens, file, fstop, focus, sensor, blades, coating, setting } = section.clone();
+    match (lens, file) {
+        (Some(name), _) => options.add("--lens", name),
+        (None, file) => options.add("--lens", word(&file.unwrap_or_default())?),
+    }
+    options.given("--fstop", fstop, |x| x.to_string());
+    options.given("--focus", focus, |x| x.to_string());
+    options.given("--sensor", sensor, |[width, height]| format!("{width}x{height}"));
+    options.given("--blades", blades, |x| x.to_string());
+    options.given("--coating", coating, |x| x);
+    options.given("--setting", setting, |x| x);
+    Ok(())
 }
 
 #[derive(Default)]

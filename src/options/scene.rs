@@ -10,9 +10,8 @@ use glam::DVec2;
 use crate::choices::{LengthUnit, Mix, Sources};
 use crate::look::{Look, LookLens, LookLights};
 use crate::options::numbers::point;
-use crate::options::{FindArgs, UnitArgs};
-use crate::scene;
-use crate::scene::presets::NO_LENS;
+use crate::options::{FindArgs, OpticsArgs, UnitArgs};
+use crate::scene::{self, Optical};
 use crate::{Error, Result};
 
 /// What glares.
@@ -28,8 +27,9 @@ pub struct SceneArgs {
     #[arg(long, value_name = "NAME", conflicts_with = "lens")]
     preset: Option<String>,
 
-    /// The lens, from a file of [[lens_ghost]] tables, which has no veil but its own; `none` for one without ghosts
-    #[arg(long, value_name = "FILE")]
+    /// The lens: a real one, of `vglare lens`; a file of its surfaces, or of [[lens_ghost]] tables, neither of which has a veil but its own;
+    /// a preset; or `none`, for one without ghosts
+    #[arg(long, value_name = "NAME|FILE")]
     lens: Option<PathBuf>,
 
     /// The lights, from a file instead of the photo: [[light]] tables, or what `vglare lights --json` printed
@@ -53,6 +53,10 @@ pub struct SceneArgs {
     /// What lengths and angles are counted in.
     #[command(flatten)]
     pub unit: UnitArgs,
+
+    /// How the lens is set.
+    #[command(flatten)]
+    optics: OpticsArgs,
 }
 
 impl SceneArgs {
@@ -65,9 +69,11 @@ impl SceneArgs {
     /// The lens that is asked for.
     fn lens(&self) -> Result<Option<LookLens>> {
         let lens = match (&self.lens, &self.preset) {
-            (Some(path), _) if path.as_os_str() == NO_LENS => LookLens::preset(NO_LENS)?,
-            (Some(path), _) => LookLens::File(path.clone(), scene::read_lens(path)?.into()),
-            (None, Some(name)) => LookLens::preset(name)?,
+            (Some(name), _) => self.optics.lens(name)?.into(),
+            (None, Some(name)) => {
+                self.optics.without_lens()?;
+                LookLens::preset(name)?
+            }
             (None, None) => return Ok(None),
         };
         Ok(Some(lens))
@@ -97,6 +103,12 @@ impl SceneArgs {
         if let Some(lens) = self.lens()? {
             // What a scene says of the veil is said of any lens.
             look = if says_veil { Look { lens, ..look } } else { look.through(lens, adds)? };
+        } else if let LookLens::Optical(optical) = &look.lens {
+            let mut section = optical.section().clone();
+            section.set(&self.optics.section());
+            look.lens = LookLens::Optical(Optical::new(section)?);
+        } else {
+            self.optics.without_lens()?;
         }
         if let Some(unit) = self.unit_of_lights()?.filter(|_| !names_unit) {
             look.unit = unit;

@@ -27,6 +27,10 @@
 //! firefly_limit = 1000        # a pixel that outshines its neighbours by more is no light; 0 takes it
 //! add = false                 # whether the file's lights are added to the photo's
 //!
+//! [optics]                    # optional: a lens by its surfaces, in the place of a preset; docs/lenses.md has them
+//! lens = "double-gauss"       # or file = "my-lens.zmx"
+//! fstop = 8.0                 # f-number; wide open otherwise. focus, sensor, blades, coating, setting are optional, too
+//!
 //! [veil]                      # every pixel a source; docs/scenes.md has the functions and their keys
 //! psf = "cie"                 # or "none", where the lens has a veil and there is to be none
 //! age = 60
@@ -74,7 +78,7 @@ use super::number::plain;
 use super::sections::{AccuracySection, AccuracyTable, FindSection, LookSection, Version};
 use super::tables::{LensTable, LightsJson, LightsTable, SceneTable, VersionTable};
 use super::veil::{self, VeilSection};
-use super::{Ghost, LensGhost, Light};
+use super::{Ghost, LensGhost, Light, OpticsSection};
 use crate::choices::LengthUnit;
 use crate::{Error, Result};
 
@@ -87,6 +91,8 @@ pub struct SceneFile {
     pub description: String,
     /// The lens, as the name of a preset that there is, with `v1/` before it where it is one of version 1; `None` beside lens ghosts.
     pub preset: Option<String>,
+    /// The lens, by its surfaces, and how it is set; `None` beside a preset or lens ghosts.
+    pub optics: Option<OpticsSection>,
     /// Where the lens's axis meets the picture; its centre where it is `None`.
     pub axis: Option<DVec2>,
     /// Period of the series in x and y, in the file's unit; planned where it is `None`.
@@ -128,6 +134,7 @@ pub(super) fn parse_scene(path: &Path, text: &str) -> Result<SceneFile> {
     let version = version.map_err(located)?;
     let table: SceneTable = from_toml(path, text)?;
     let preset = table.preset(version).map_err(located)?;
+    let optics = table.optics(path).map_err(located)?;
     let period = table.period.map(|period| DVec2::from_array(plain(period)));
     let accuracy = table.accuracy.map(AccuracyTable::section).transpose().map_err(located)?;
     let bells = Bells::new(path, table.profiles, period).map_err(located)?;
@@ -138,6 +145,7 @@ pub(super) fn parse_scene(path: &Path, text: &str) -> Result<SceneFile> {
         version,
         description: table.description,
         preset,
+        optics,
         axis: table.axis.map(|axis| DVec2::from_array(plain(axis))),
         period,
         degree: table.degree.map(|degree| degree.map(|d| d.0)),

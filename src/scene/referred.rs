@@ -15,6 +15,7 @@ pub fn referred(path: &Path) -> Vec<PathBuf> {
     let profiles = table.get("profile").and_then(toml::Value::as_array);
     let veil = |key| table.get("veil").and_then(|veil| veil.get(key)?.as_str());
     let files = profiles.into_iter().flatten().filter_map(|profile| profile.get("file")?.as_str());
-    let files = files.chain(veil("table")).chain(veil("kernel"));
+    let optics = table.get("optics").and_then(|optics| optics.get("file")?.as_str());
+    let files = files.chain(optics).chain(veil("table")).chain(veil("kernel"));
     files.map(|file| path.parent().unwrap_or(Path::new("")).join(file)).collect()
 }

@@ -1,5 +1,7 @@
 //! Scene, light and lens files as they are written. Every table refuses keys that it does not know.
 
+use std::path::Path;
+
 use glam::DVec2;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -9,8 +11,8 @@ use super::bells::{BellKeys, BellName, Bells, Fault, ProfileTable};
 use super::number::{Degree, Finite, NotNegative, Number, Positive, Sizes, plain};
 use super::presets;
 use super::sections::{AccuracyTable, FindSection, LookSection, Version};
-use super::veil::VeilTable;
-use super::{Ghost, LensGhost, Light};
+use super::veil::{VeilTable, absolute};
+use super::{Ghost, LensGhost, Light, Optical, OpticsSection};
 use crate::choices::LengthUnit;
 
 /// The version of a scene file, whatever else is in it: one that is not known may have other keys.
@@ -37,6 +39,7 @@ pub(super) struct SceneTable {
     #[serde(default)]
     pub find: FindSection,
     pub accuracy: Option<AccuracyTable>,
+    pub optics: Option<Spanned<OpticsSection>>,
     pub veil: Option<Spanned<VeilTable>>,
     #[serde(default, rename = "profile")]
     pub profiles: Vec<ProfileTable>,
@@ -151,6 +154,21 @@ impl VersionTable {
 }
 
 impl SceneTable {
+    /// The lens by its surfaces, if it is one; its file, which lies beside the scene's at `path`, by an absolute path. It has been read, and
+    /// can be set as the file says.
+    pub fn optics(&self, path: &Path) -> Result<Option<OpticsSection>, Fault> {
+        let Some(optics) = &self.optics else { return Ok(None) };
+        let fault = |message: String| Fault { span: optics.span(), message };
+        if self.preset.is_some() || !self.lens_ghosts.is_empty() {
+            let other = if self.preset.is_some() { "`preset`" } else { "[[lens_ghost]]" };
+            return Err(fault(format!("expected either [optics] or {other}, found both")));
+        }
+        let mut section = optics.as_ref().clone();
+        section.file = section.file.map(|file| absolute(&path.parent().unwrap_or(Path::new("")).join(file)));
+        Optical::new(section.clone()).map_err(|error| fault(error.to_string()))?;
+        Ok(Some(section))
+    }
+
     /// The preset that the lens is, if it is one.
     pub fn preset(&self, version: Version) -> Result<Option<String>, Fault> {
         let Some(preset) = &self.preset else { return Ok(None) };

@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::file::parse_scene;
 use super::sections::{FindSection, Goal, LookSection};
 use super::veil::NO_VEIL;
-use super::{Ghost, LensGhost, Light, SceneFile, VeilSection};
+use super::{Ghost, LensGhost, Light, OpticsSection, SceneFile, VeilSection};
 use crate::choices::Evaluator;
 use crate::series::{Bell, Profile};
 use crate::{Error, Result, target};
@@ -44,6 +44,7 @@ pub fn to_toml(scene: &SceneFile) -> String {
         version: scene.version.number(),
         description: &scene.description,
         preset: scene.preset.as_deref(),
+        optics: scene.optics.as_ref(),
         axis: scene.axis,
         period: scene.period,
         degree: scene.degree,
@@ -81,6 +82,8 @@ struct SceneOut<'a> {
     find: Option<FindSection>,
     #[serde(skip_serializing_if = "Option::is_none")]
     accuracy: Option<AccuracyOut>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    optics: Option<&'a OpticsSection>,
     #[serde(skip_serializing_if = "Option::is_none")]
     veil: Option<VeilOut<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]

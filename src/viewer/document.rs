@@ -90,6 +90,7 @@ impl Document {
     pub fn new(path: &Path, photo: Photo, look: Look) -> Self {
         let shrunk = side(photo.frame.window, LIVE_PIXELS);
         let whole = look.frame(&photo).unwrap_or(photo.frame);
+        let look = look.fitted(&whole).into_owned();
         let recovered = look.recovered(&photo);
         let (frame, means) = match shrunk {
             1 => (photo.frame, None),
@@ -240,6 +241,9 @@ impl Document {
     fn fit_unit(&mut self) {
         let unit = self.look.frame(&self.photo).map_or(self.frame.unit, |frame| frame.unit);
         self.frame = self.frame.in_units_of(unit);
+        if let Cow::Owned(look) = self.look.fitted(&self.frame) {
+            self.look = look;
+        }
         if self.found_in != unit {
             self.found.rescale(self.found_in / unit);
             self.found_in = unit;

@@ -101,6 +101,7 @@ pub fn show(ui: &mut Ui, document: &mut Document, _: &Stage) {
 fn called(lens: &LookLens) -> String {
     match lens {
         LookLens::Preset(lens) | LookLens::File(_, lens) => lens.name.clone(),
+        LookLens::Optical(optical) => optical.lens().name.clone(),
         LookLens::Own(_) => "its own table".into(),
     }
 }

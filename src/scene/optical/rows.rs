@@ -1,0 +1,117 @@
+//! The ghosts of a lens as rows of a table: each a bell where its magnification says, as large and as bright as paraxial rays make it.
+//!
+//! A ghost of a distant light is its opening, out of focus: evenly bright, with the shape that the iris has and an edge that diffraction
+//! softens. Fresnel's fringes of an edge that is d from focus are √(λ d) wide on the sensor.
+
+use glam::DVec2;
+
+use crate::optics::{FirstOrder, GhostPath, Iris as Blades, LensGhosts};
+use crate::scene::LensGhost;
+use crate::series::{Bell, Iris};
+
+/// The edges that an [`Iris`] is given, over its radius: real ghosts have aberrations, too, and sharper ones cost a photo more
+/// harmonics than they show. The softest is one that is no edge any more.
+const EDGES: [f64; 2] = [0.05, 0.3];
+
+/// No edge is sharper than this, in the unit of lengths: some three pixels at 1080p.
+const SHARPEST: f64 = 0.007;
+
+/// Ghosts of a smaller radius, in the unit of lengths, are Gaussians, the narrowest of which is half as wide: one that is in focus shows
+/// the light itself, and not the iris.
+const SMALLEST: f64 = 0.024;
+
+/// Colours that lie less than this far apart are one ghost, over the width of its edge.
+const APART: f64 = 1.0;
+
+/// A logistic step falls from 90 to 10 % within so many of the edges that its iris is given.
+const STEP: f64 = 4.4;
+
+/// What shapes the ghosts of a lens.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Opening {
+    /// Straight sides; none where the iris is round, or open wider than its blades reach.
+    blades: Option<u32>,
+    /// In degrees.
+    rotation: f64,
+    /// In mm.
+    wavelength: f64,
+}
+
+impl Opening {
+    /// Of an iris in a lens, at a wavelength in nm.
+    pub fn new(iris: &Blades, lens: &FirstOrder, wavelength: f64) -> Self {
+        // Within a third of a stop the blades are all but out of the way.
+        let engaged = lens.f_number > 1.12 * lens.widest_f_number;
+        // Rounded blades make an opening that is all but a circle.
+        let blades = iris.blades.filter(|_| engaged && iris.roundness < 0.5);
+        Self { blades, rotation: iris.rotation, wavelength: 1e-6 * wavelength }
+    }
+
+    /// The bell of a ghost whose radius on the sensor is so many mm, upside down or not, and its size; lengths are in units of so many mm.
+    fn bell(&self, radius: f64, upside_down: bool, focus: Option<f64>, unit: f64) -> (Bell, f64) {
+        let size = radius / unit;
+        if size < SMALLEST {
+            return (Bell::Gaussian, 0.5 * SMALLEST.max(size));
+        }
+        let fringe = focus.map_or(f64::INFINITY, |focus| (self.wavelength * focus.abs()).sqrt());
+        let edge = (fringe / radius / STEP).max(SHARPEST / size).clamp(EDGES[0], EDGES[1]);
+        let turned = if upside_down { 180.0 } else { 0.0 };
+        let iris = match self.blades {
+            Some(blades) => Iris::new(edge, blades, (self.rotation + turned).rem_euclid(360.0 / f64::from(blades))),
+            None => Iris::new(edge, 0, 0.0),
+        };
+        // Of what a lens may say, no iris is refused.
+        iris.map_or((Bell::Gaussian, 0.5 * size), |iris| (Bell::Iris(iris), size))
+    }
+}
+
+/// The rows of all ghosts that have any light, where a unit of lengths is so many mm on the sensor.
+pub(super) fn rows(table: &LensGhosts, opening: &Opening, unit: f64) -> Vec<LensGhost> {
+    table.ghosts.iter().flat_map(|ghost| of_ghost(ghost, opening, unit)).collect()
+}
+
+/// A row for all colours where they lie at one place, and one for each where dispersion moves or scales them.
+fn of_ghost(ghost: &GhostPath, opening: &Opening, unit: f64) -> Vec<LensGhost> {
+    let of = |magnification: f64, radius: f64, share: [f64; 3]| {
+        let largest = share.into_iter().fold(0.0, f64::max);
+        let (bell, size) = opening.bell(radius, ghost.scale[1] < 0.0, ghost.focus_mm, unit);
+        let tint = share.map(|share| share / largest);
+        (largest > 0.0 && magnification.is_finite() && size.is_finite()).then(|| LensGhost {
+            bell,
+            along: magnification,
+            size: DVec2::splat(size),
+            tint,
+            share: largest,
+        })
+    };
+    let total: f64 = ghost.share.iter().sum();
+    let mean = |values: [f64; 3]| -> f64 {
+        values.iter().zip(ghost.share).map(|(value, share)| value * share / total).sum()
+    };
+    let (magnification, radius) = (mean(ghost.magnification), mean(ghost.radius_mm));
+    if !(total > 0.0) {
+        return Vec::new();
+    }
+    let shines = |c: &usize| ghost.share[*c] > 0.0;
+    let spread = |values: [f64; 3]| {
+        let (low, high) = (0..3).filter(shines).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), c| {
+            (low.min(values[c]), high.max(values[c]))
+        });
+        high - low
+    };
+    // As far as it matters for a light at the middle of an edge of the picture.
+    let apart = unit * spread(ghost.magnification) + spread(ghost.radius_mm);
+    let edge = match opening.bell(radius, false, ghost.focus_mm, unit) {
+        (Bell::Iris(iris), size) => STEP * iris.edge() * size * unit,
+        (_, size) => size * unit,
+    };
+    if apart <= APART * edge {
+        return of(magnification, radius, ghost.share).into_iter().collect();
+    }
+    let alone = |c: usize| {
+        let mut share = [0.0; 3];
+        share[c] = ghost.share[c];
+        of(ghost.magnification[c], ghost.radius_mm[c], share)
+    };
+    (0..3).filter(shines).filter_map(alone).collect()
+}
