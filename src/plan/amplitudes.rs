@@ -10,6 +10,7 @@ use std::time::Instant;
 use glam::DVec2;
 use rayon::prelude::*;
 
+use super::bands::Folded;
 use super::modes::{Mode, Modes};
 use super::rounding::Strength;
 use super::weigh::weight;
@@ -106,8 +107,21 @@ impl Amplitudes {
     ///
     /// and at most κ/2 (|Z₊| + |Z₋|). For a radial bell the transform stands in the place of u_n v_m.
     pub fn new(problem: &Problem, groups: &[Group], counts: &[u32], period: DVec2, scale: Rgb) -> Self {
+        Self::beside(problem, groups, counts, period, scale, &[])
+    }
+
+    /// The same with what was folded into their period, of no more harmonics than they have.
+    pub fn beside(
+        problem: &Problem,
+        groups: &[Group],
+        counts: &[u32],
+        period: DVec2,
+        scale: Rgb,
+        folded: &[Folded],
+    ) -> Self {
         let started = Instant::now();
-        let sums = View::new(problem, counts, period, scale).sums(groups);
+        let mut sums = View::new(problem, counts, period, scale).sums(groups);
+        folded.iter().for_each(|folded| sums.add_folded(counts, folded));
         let kappas = (0..).zip(counts).flat_map(|(n, &count)| (0..count).map(move |m| kappa(n, m)));
         let (terms, values): (Vec<Mode>, Vec<Rgb>) =
             sums.0.iter().zip(kappas).map(|(sums, kappa)| mode(sums, kappa)).unzip();
@@ -402,6 +416,21 @@ impl Sums {
                 }
             }
             rest = others;
+        }
+    }
+
+    /// Adds the modes of another series of this period.
+    fn add_folded(&mut self, counts: &[u32], folded: &Folded) {
+        let [columns, rows] = folded.harmonics;
+        for ((n, row), terms) in self::rows(counts).enumerate().zip(folded.terms.chunks(rows)).take(columns) {
+            for (m, (sums, mode)) in self.0[row].iter_mut().zip(terms).enumerate() {
+                let weight = kappa(n as u32, m as u32).recip();
+                for (colour, [a, b, c, d]) in mode.iter().enumerate() {
+                    for (part, value) in [a, &-c, &-b, d].into_iter().enumerate() {
+                        sums[3 * part + colour] += weight * value;
+                    }
+                }
+            }
         }
     }
 

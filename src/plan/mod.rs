@@ -4,6 +4,7 @@
 //! bound; docs/accuracy.md says where each comes from.
 
 mod amplitudes;
+mod bands;
 mod candidate;
 mod check;
 mod cost;

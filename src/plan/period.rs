@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use super::slots::{Slots, by_chunks};
 use super::weigh::{Weighed, along};
-use crate::problem::{Images, Problem};
+use crate::problem::Problem;
 use crate::scene::Ghost;
 use crate::series::{Bell, Modes, Shape};
 
@@ -71,18 +71,30 @@ impl Reach {
 
 /// Gathers the ghosts into some hundreds of reaches, so that trying a period costs the same for any number of them.
 pub(super) fn reaches(problem: &Problem, weighed: &Weighed) -> Vec<Reach> {
+    let all: Vec<u32> = (0..weighed.images.len() as u32).collect();
+    let (ghosts, images) = (reaches_of_ghosts(problem, weighed), reaches_of_images(problem, weighed, &all));
+    joined(ghosts.iter().chain(&images).map(|reach| (&reach.bell, reach.clone())))
+}
+
+/// Of ghosts that are no images.
+pub(super) fn reaches_of_ghosts(problem: &Problem, weighed: &Weighed) -> Vec<Reach> {
     let bounds = <[DVec2; 2]>::from(problem.frame().bounds());
     let chunks = by_chunks(problem.ghosts(), &weighed.weights, |ghosts| {
         joined(ghosts.map(|(_, ghost, weight)| (&ghost.bell, Reach::new(ghost, weight, bounds))))
     });
-    let of_images = weighed.images.iter().zip(problem.images().into_iter().flat_map(Images::all));
-    let images: Vec<Reach> = of_images
-        .filter_map(|(&weight, image)| {
-            let centres = problem.images()?.centres(image);
-            Some(Reach::of_image(&image.ghost, weight, centres, bounds))
-        })
-        .collect();
-    joined(chunks.iter().flatten().chain(&images).map(|reach| (&reach.bell, reach.clone())))
+    joined(chunks.iter().flatten().map(|reach| (&reach.bell, reach.clone())))
+}
+
+/// Of some of the images.
+pub(super) fn reaches_of_images(problem: &Problem, weighed: &Weighed, members: &[u32]) -> Vec<Reach> {
+    let bounds = <[DVec2; 2]>::from(problem.frame().bounds());
+    let Some(images) = problem.images() else { return Vec::new() };
+    let reach = |member: &u32| {
+        let image = &images.all()[*member as usize];
+        Reach::of_image(&image.ghost, weighed.images[*member as usize], images.centres(image), bounds)
+    };
+    let all: Vec<Reach> = members.iter().map(reach).collect();
+    joined(all.iter().map(|reach| (&reach.bell, reach.clone())))
 }
 
 /// The reaches of each bell and bin joined.

@@ -3,6 +3,7 @@
 use glam::DVec2;
 
 use super::amplitudes::{self, Amplitudes};
+use super::bands::{self, Band, bands};
 use super::candidate::{NEEDED, Survey};
 use super::decay::{self, Decay};
 use super::lattice::{self, Marginals};
@@ -44,6 +45,9 @@ impl Wide {
         survey.prepare().ok()?;
         let rounding = rounding::bound(&survey.weighed, Evaluator::Grid, rounding::SEEN_DEGREE);
         let usable = (request.tolerance - rounding).max(0.25 * request.tolerance);
+        if images.is_some() && request.degree.is_none() && request.period.is_none() {
+            return Self::in_bands(problem, survey, request, usable);
+        }
         let period = request.period.unwrap_or_else(|| period::shortest(&survey.reaches, usable * share::PERIODISATION));
         let mut groups = survey.groups.clone();
         let counts = match request.degree {
@@ -73,6 +77,61 @@ impl Wide {
             gathering,
             given,
         })
+    }
+
+    /// Of images, those that need longer periods than others folded into the period of the sharpest.
+    fn in_bands(problem: &Problem, survey: &Survey, request: &Request, usable: f64) -> Option<Self> {
+        // What folding may cost, of what may be used up.
+        const FOLDED: f64 = 0.01;
+        let (images, scale) = (problem.images()?, survey.weighed.scale);
+        let mut bands = bands(problem, &survey.weighed, &survey.groups, usable * share::PERIODISATION);
+        let part = 1.0 / bands.len().max(1) as f64;
+        let mut kept: Vec<Vec<u32>> = Vec::new();
+        for band in &mut bands {
+            kept.push(images::enough(&mut band.groups, band.period, part * usable, &survey.effort)?);
+        }
+        let fastest = |(band, counts): &(&Band, &Vec<u32>)| counts.len() as f64 / band.period.x;
+        let of = bands.iter().zip(&kept);
+        let main = of.enumerate().max_by(|one, other| fastest(&one.1).total_cmp(&fastest(&other.1)))?.0;
+        let mut gathering = 0.0;
+        let (mut main, mut counts) = (bands.swap_remove(main), kept.swap_remove(main));
+        gathering += gather::choose_in_doubles(
+            &mut main.groups,
+            main.period,
+            share::GATHERING * request.tolerance,
+            amplitudes::MODE,
+        );
+        gathering += images::reduce(&mut main.groups, images, main.period, part * share::IMAGES * request.tolerance);
+        let mut periodisation = period::error(&main.reaches, main.period);
+        let (mut beyond, mut folded, mut others) = (0.0, Vec::new(), Vec::new());
+        for (band, counts) in bands.iter_mut().zip(&kept) {
+            gathering += images::reduce(&mut band.groups, images, band.period, part * share::IMAGES * request.tolerance);
+            if !amplitudes::worth_looking(&band.groups, counts, band.period, true) {
+                return None;
+            }
+            survey.effort.spend(amplitudes::work(&band.groups, counts, band.period)).ok()?;
+            let modes = Amplitudes::new(problem, &band.groups, counts, band.period, scale);
+            let budget = part * FOLDED * usable;
+            let band_folded = bands::fold(modes.modes(), band.period, main.period, problem.frame(), budget);
+            gathering += band_folded.error;
+            periodisation += period::error(&band.reaches, band.period);
+            beyond += terms::error(&band.groups, band.period, counts);
+            let degree = band_folded.harmonics.map(|harmonics| harmonics as u32 - 1);
+            others.extend(band.groups.iter().map(|group| Group { degree, ..group.clone() }));
+            folded.push(band_folded);
+        }
+        let degree = |axis: usize| folded.iter().map(|folded| folded.harmonics[axis]).max().unwrap_or(1);
+        let [columns, rows] = [0, 1].map(degree);
+        counts.resize(counts.len().max(columns), 1);
+        counts.iter_mut().take(columns).for_each(|count| *count = (*count).max(rows as u32));
+        if !amplitudes::worth_looking(&main.groups, &counts, main.period, true) {
+            return None;
+        }
+        survey.effort.spend(amplitudes::work(&main.groups, &counts, main.period)).ok()?;
+        let amplitudes = Amplitudes::beside(problem, &main.groups, &counts, main.period, scale, &folded);
+        beyond += terms::error(&main.groups, main.period, &counts);
+        let groups = main.groups.into_iter().chain(others).collect();
+        Some(Self { period: main.period, periodisation, groups, amplitudes, beyond, gathering, given: false })
     }
 
     /// The modes, and their period.

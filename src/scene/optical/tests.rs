@@ -1,0 +1,123 @@
+use super::*;
+use crate::scene::LensGhost;
+use crate::series::Bell;
+
+fn lens(name: &str) -> OpticsSection {
+    OpticsSection { lens: Some(name.into()), ..OpticsSection::default() }
+}
+
+/// The light of all rows, RGB.
+fn shares(rows: &[LensGhost]) -> [f64; 3] {
+    rows.iter().fold([0.0; 3], |sum, row| [0, 1, 2].map(|c| sum[c] + row.share * row.tint[c]))
+}
+
+#[test]
+fn rows_carry_the_light_of_all_pairs_whatever_the_picture() {
+    for name in ["double-gauss", "tessar", "telephoto"] {
+        let optical = Optical::new(lens(name)).unwrap();
+        let wanted = optical
+            .ghosts()
+            .ghosts
+            .iter()
+            .fold([0.0; 3], |sum, ghost| [0, 1, 2].map(|c| sum[c] + ghost.share[c]));
+        for frame in [Frame::full(1920, 1080), Frame::full(100, 400), Frame::full(1920, 1080).in_units_of(0.3)] {
+            for (share, wanted) in shares(&optical.fitted(&frame).lens().ghosts).into_iter().zip(wanted) {
+                assert!((share - wanted).abs() <= 1e-9 * wanted, "{name}: {share} {wanted}");
+            }
+        }
+    }
+}
+
+/// 36 mm are the width of a photo, and its height where it stands upright; lengths are in the unit of the frame.
+#[test]
+fn the_longer_side_of_a_sensor_is_that_of_the_picture() {
+    let optical = Optical::new(lens("double-gauss")).unwrap();
+    let largest = |frame: Frame| {
+        optical.fitted(&frame).lens().ghosts.iter().map(|row| row.size.x).fold(0.0, f64::max)
+    };
+    let wide = largest(Frame::full(1920, 1080));
+    let radius = optical.ghosts().ghosts.iter().flat_map(|ghost| ghost.radius_mm).fold(0.0, f64::max);
+    assert!((wide * 18.0 * 1080.0 / 1920.0 / radius - 1.0).abs() < 0.02, "{wide} {radius}");
+    // Half the height is half the longer side then.
+    assert!((largest(Frame::full(1080, 1920)) / wide - 1080.0 / 1920.0).abs() < 1e-12);
+    assert!((largest(Frame::full(1920, 1080).in_units_of(0.5)) / wide - 2.0).abs() < 1e-12);
+    // On a smaller sensor the same circle is more of the picture.
+    let small = Optical::new(OpticsSection { sensor: Some([18.0, 12.0]), ..lens("double-gauss") }).unwrap();
+    let small = small.fitted(&Frame::full(1920, 1080));
+    let largest = small.lens().ghosts.iter().map(|row| row.size.x).fold(0.0, f64::max);
+    assert!((largest / wide - 2.0).abs() < 0.05, "{largest} {wide}");
+}
+
+#[test]
+fn blades_show_where_the_lens_is_stopped_down() {
+    let blades = |section: OpticsSection| {
+        let lens = Optical::new(section).unwrap().lens().clone();
+        let of = |row: &LensGhost| if let Bell::Iris(iris) = &row.bell { Some(iris.blades()) } else { None };
+        let mut found: Vec<u32> = lens.ghosts.iter().filter_map(of).collect();
+        found.dedup();
+        found
+    };
+    assert_eq!(blades(lens("tessar")), [0]);
+    let stopped = OpticsSection { fstop: Some(8.0), blades: Some(5), ..lens("tessar") };
+    assert_eq!(blades(stopped.clone()), [5]);
+    assert_eq!(blades(OpticsSection { blades: Some(0), ..stopped }), [0]);
+}
+
+#[test]
+fn coatings_take_the_ghosts_away() {
+    let share = |coating: &str| {
+        let section = OpticsSection { coating: Some(coating.into()), ..lens("double-gauss") };
+        shares(&Optical::new(section).unwrap().lens().ghosts).into_iter().sum::<f64>()
+    };
+    let [none, single, many] = ["none", "mgf2", "multi"].map(share);
+    assert!(none > 5.0 * single && single > 2.0 * many, "{none} {single} {many}");
+}
+
+#[test]
+fn what_a_name_means_is_told_by_its_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let golden = |name: &str| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden-optics/")).join(name);
+    let none = OpticsSection::default();
+    let optical = |path: &Path| match named_lens(path, &none).unwrap() {
+        NamedLens::Optical(optical) => optical,
+        other => panic!("{other:?}"),
+    };
+    // One lens from vglare's own file, from Zemax's in two encodings, and from pbrt's.
+    let own = optical(Path::new("double-gauss"));
+    for name in ["double-gauss.zmx", "double-gauss-utf8.zmx", "double-gauss.dat"] {
+        let (own, read) = (own.ghosts(), optical(&golden(name)));
+        assert_eq!(read.lens().name, name.rsplit_once('.').unwrap().0);
+        assert_eq!(read.lens().veil, None, "files have no veil but their own");
+        assert_eq!(read.ghosts().ghosts.len(), own.ghosts.len(), "{name}");
+    }
+    let copy = folder.path().join("mine.toml");
+    fs::write(&copy, lenses::find("tessar").unwrap().toml).unwrap();
+    assert_eq!(optical(&copy).ghosts(), optical(Path::new("tessar")).ghosts());
+    let table = folder.path().join("table.toml");
+    fs::write(&table, presets::find("zoom").unwrap().toml).unwrap();
+    assert!(matches!(named_lens(&table, &none), Ok(NamedLens::Table(..))));
+    assert!(matches!(named_lens(Path::new("anamorphic"), &none), Ok(NamedLens::Preset(_))));
+    assert!(matches!(named_lens(Path::new("none"), &none), Ok(NamedLens::Preset(_))));
+}
+
+#[test]
+fn what_cannot_be_is_refused_by_name() {
+    let none = OpticsSection::default();
+    let golden = |name: &str| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden-optics/")).join(name);
+    let said = |path: &Path, section: &OpticsSection| named_lens(path, section).unwrap_err().to_string();
+    for (path, section, word) in [
+        (PathBuf::from("tesar"), none.clone(), "did you mean tessar?"),
+        (PathBuf::from("no-such-file.zmx"), none.clone(), "no-such-file.zmx"),
+        (golden("aspheric.zmx"), none.clone(), "surface 2"),
+        (golden("tilted.zmx"), none.clone(), "surface"),
+        (PathBuf::from("anamorphic"), OpticsSection { fstop: Some(8.0), ..none.clone() }, "table of ghosts"),
+        (PathBuf::from("tessar"), OpticsSection { fstop: Some(1.0), ..none.clone() }, "f/"),
+        (PathBuf::from("tessar"), OpticsSection { blades: Some(2), ..none.clone() }, "blades"),
+        (PathBuf::from("tessar"), OpticsSection { coating: Some("gold".into()), ..none.clone() }, "gold"),
+        (PathBuf::from("zoom"), OpticsSection { setting: Some("1000 mm".into()), ..none.clone() }, "1000 mm"),
+        (PathBuf::from("tessar"), OpticsSection { focus: Some(0.01), ..none.clone() }, "focus"),
+    ] {
+        let said = said(&path, &section);
+        assert!(said.contains(word), "{}: {said}", path.display());
+    }
+}

@@ -3,7 +3,7 @@ use crate::chance::Chance;
 use crate::choices::{Beyond, LengthUnit, LightBy, LightShape, Mix, Normalize, Sources};
 use crate::choices::{Border, Projection};
 use crate::psf::{Name, Parameters};
-use crate::scene::{AccuracySection, Recover, Version, read_scene};
+use crate::scene::{AccuracySection, OpticsSection, Recover, Version, read_scene};
 use crate::series::{Disc, SineGaussian, VonMises};
 
 const PERIOD: DVec2 = DVec2::new(4.1, 3.3);
@@ -74,8 +74,17 @@ fn scene(chance: &mut Chance) -> SceneFile {
         LensGhost { bell: bell.clone(), along, size, tint, share }
     };
     // What either version calls so.
-    let preset = maybe(chance, |_| "v1/zoom".to_owned());
-    let own = if preset.is_none() { bells.clone() } else { Vec::new() };
+    let optics = maybe(chance, |chance| OpticsSection {
+        lens: Some("tessar".into()),
+        fstop: maybe(chance, |chance| chance.between(4.0, 22.0)),
+        focus: maybe(chance, |chance| chance.between(0.5, 10.0)),
+        sensor: one_of(chance, &[None, Some([23.5, 15.6])]),
+        blades: one_of(chance, &[None, Some(0), Some(7)]),
+        coating: one_of(chance, &[None, Some("none".into()), Some("multi".into())]),
+        ..OpticsSection::default()
+    });
+    let preset = maybe(chance, |_| "v1/zoom".to_owned()).filter(|_| optics.is_none());
+    let own = if preset.is_none() && optics.is_none() { bells.clone() } else { Vec::new() };
     let goals = [None, Some(Goal::Tolerance(chance.between(1e-9, 0.9))), Some(Goal::Budget(positive(chance)))];
     let some = (chance.between(0.0, 4.0)) as usize;
     let veil = maybe(chance, |chance| VeilSection {
@@ -89,6 +98,7 @@ fn scene(chance: &mut Chance) -> SceneFile {
         version: one_of(chance, &[Version::One, Version::Two]),
         description: one_of(chance, &["", "two \"lamps\"\n\\ and é", "[look]"]).to_owned(),
         preset,
+        optics,
         axis: maybe(chance, point),
         period: Some(PERIOD),
         degree: one_of(chance, &[None, Some([0, 4096])]),
