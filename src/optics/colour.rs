@@ -116,13 +116,13 @@ mod tests {
         let spectrum: Vec<f64> = observer.wavelengths.iter().map(|&wavelength| ripple(wavelength)).collect();
         let white = vec![1.0; spectrum.len()];
         let found = observer.relative(&spectrum, &white);
-        for c in 0..3 {
+        for (c, found) in found.into_iter().enumerate() {
             let fine = (3800..=7800).map(|k| f64::from(k) * 0.1).map(|wavelength| {
                 let weight = rec_709(matching(wavelength))[c];
                 (weight * ripple(wavelength), weight)
             });
             let (part, whole) = fine.fold((0.0, 0.0), |sum, next| (sum.0 + next.0, sum.1 + next.1));
-            assert!((found[c] - part / whole).abs() < 2e-3, "{c}: {} {}", found[c], part / whole);
+            assert!((found - part / whole).abs() < 2e-3, "{c}: {found} {}", part / whole);
         }
     }
 }
