@@ -115,7 +115,7 @@ impl System {
         let indices = self.indices(self.setup().wavelength);
         let (matrix, clips) = clipped(self, &direct, &indices);
         let tangent = half_field.to_radians().tan();
-        let clips = that_bite(clips, tangent);
+        let clips = self.that_bite(clips, tangent);
         let survey = Survey::of(self, common_area(&clips, 0.0), self.height_per_tangent(&matrix), tangent, indices);
         let mut ghosts: Vec<GhostPath> =
             survey.pairs().into_iter().map(|pair| survey.ghost(&pair)).collect::<Result<_>>()?;
@@ -131,6 +131,10 @@ impl System {
         ghosts.sort_by(|a, b| irradiance(b).total_cmp(&irradiance(a)));
         let (image_per_tangent, wavelengths) = (survey.image_per_tangent, survey.observer.centres);
         Ok(LensGhosts { image_per_tangent, clips, wavelengths, ghosts })
+    }
+
+    fn that_bite(&self, clips: Vec<Clip>, tangent: f64) -> Vec<Clip> {
+        that_bite(clips, tangent, self.stop_number(), self.iris().inner())
     }
 
     /// The height behind a matrix from the first vertex, in mm for a tangent of 1, of a ray through the pupil's centre.
@@ -159,7 +163,8 @@ pub(super) fn clipped(system: &System, path: &Path, indices: &[f64]) -> (RayMatr
         // Where a rim is conjugate to the light itself, a circle without end passes or stops all of it.
         let a = if matrix.a.abs() < 1e-12 { 1e-12 } else { matrix.a };
         let radius = system.surfaces()[step.surface].semi_aperture / a.abs();
-        clips.push(Clip { center_per_tangent: -system.height_per_tangent(matrix) / a, radius });
+        let center_per_tangent = -system.height_per_tangent(matrix) / a;
+        clips.push(Clip { surface: step.surface + 1, inverted: a < 0.0, center_per_tangent, radius });
     });
     (matrix, clips)
 }
@@ -239,7 +244,7 @@ impl<'a> Survey<'a> {
     fn ghost(&self, reflections: &[usize]) -> Result<GhostPath> {
         let path = Path::new(self.system, reflections)?;
         let (matrix, clips) = clipped(self.system, &path, &self.indices);
-        let clips = that_bite(clips, self.tangent);
+        let clips = self.system.that_bite(clips, self.tangent);
         let axial = clips.first().map_or(0.0, |clip| clip.radius);
         let by_colour = self.colours.each_ref().map(|indices| self.system.matrix(&path, indices));
         let area = std::f64::consts::PI * axial * axial / self.area;

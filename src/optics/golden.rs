@@ -196,3 +196,50 @@ fn compare_rays(name: &str) {
     // A ray at a rim itself may be lost to a rounding.
     assert!(worst.rays <= 2 && worst.images - worst.alike <= worst.images / 100, "{name}");
 }
+
+#[test]
+fn every_lens_that_ships_is_as_long_and_as_fast_as_its_source_says() {
+    let mut count = 0;
+    for entry in std::fs::read_dir(file("media/lenses")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|extension| extension != "toml") || path.ends_with("glass.toml") {
+            continue;
+        }
+        let lens = Prescription::read(&path).unwrap();
+        let settings = lens.settings.iter().map(|setting| lens.setting(&setting.name).unwrap()).collect::<Vec<_>>();
+        for lens in settings.iter().chain([&lens]) {
+            let found = *System::new(lens, &Setup::default()).unwrap().first_order();
+            let near = |found: f64, stated: Option<f64>| (found / stated.unwrap() - 1.0).abs() < 0.01;
+            assert!(near(found.focal_length, lens.focal_length), "{}: {found:?}", path.display());
+            assert!(near(found.f_number, lens.f_number), "{}: {found:?}", path.display());
+        }
+        count += 1;
+    }
+    assert!(count >= 12, "{count}");
+}
+
+#[test]
+fn files_of_other_programs_are_the_same_lens_or_refused() {
+    let read = |name: &str| Prescription::read(&file(&format!("tests/golden-optics/{name}")));
+    for (ours, theirs) in [
+        ("double-gauss", "double-gauss.zmx"),
+        ("double-gauss", "double-gauss-utf8.zmx"),
+        ("double-gauss", "double-gauss.dat"),
+        ("singlet", "singlet.zmx"),
+    ] {
+        let (system, _) = lens(ours);
+        let found = System::new(&read(theirs).unwrap(), &Setup::default()).unwrap();
+        assert_eq!(found.surfaces().len(), system.surfaces().len(), "{theirs}");
+        for (found, expected) in found.surfaces().iter().zip(system.surfaces()) {
+            let same = |found: f64, expected: f64| (found - expected).abs() <= 1e-9 * expected.abs();
+            assert!(same(found.z, expected.z) && same(found.curvature, expected.curvature), "{theirs}: {found:?}");
+            assert!(same(found.semi_aperture, expected.semi_aperture), "{theirs}: {found:?}");
+            assert!(same(found.glass.index(LINE_D), expected.glass.index(LINE_D)), "{theirs}: {found:?}");
+        }
+        assert!((found.sensor_z() - system.sensor_z()).abs() < 1e-6, "{theirs}");
+    }
+    for (name, said) in [("aspheric.zmx", "PARM 2"), ("tilted.zmx", "TYPE COORDBRK")] {
+        let error = read(name).unwrap_err().to_string();
+        assert!(error.contains("surface 2") && error.contains(said), "{error}");
+    }
+}
