@@ -12,6 +12,7 @@
 //! | [`photo`] | a file → linear light, RGBA f32, and back |
 //! | [`frame`] | pixels ↔ the picture plane |
 //! | [`scene`] | photo → lights → ghosts; presets and scene files |
+//! | [`optics`] | a lens's surfaces → the ghosts of a light, by matrices and by exact rays |
 //! | [`look`] | everything that a person sets: from options, from a scene file, or by hand |
 //! | [`series`] | bells, their Fourier coefficients and their tails, in f64 |
 //! | [`problem`] | ghosts and picture, as one thing that never changes |

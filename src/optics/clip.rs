@@ -7,6 +7,10 @@ use serde::Serialize;
 /// Its centre goes with the light's direction, along the same line from the axis.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Clip {
+    /// The rim's surface, from 1.
+    pub surface: usize,
+    /// Whether its image in the pupil is upside down, which tells of a rim that is no circle.
+    pub inverted: bool,
     /// The centre, in mm for a tangent of 1 of the light's angle from the axis.
     pub center_per_tangent: f64,
     /// In mm.
@@ -14,19 +18,24 @@ pub struct Clip {
 }
 
 impl Clip {
-    /// Whether all that is within `other` is within this as well, for all light up to this tangent.
-    fn spares(&self, other: &Self, tangent: f64) -> bool {
+    /// Whether all that is within `other` is within this as well, for all light up to this tangent; of this, all that is
+    /// nearer to its centre than `inner` times the radius is open.
+    fn spares(&self, other: &Self, tangent: f64, inner: f64) -> bool {
         let apart = (self.center_per_tangent - other.center_per_tangent).abs() * tangent;
-        other.radius + apart <= self.radius
+        other.radius + apart <= self.radius * inner
     }
 }
 
-/// Those that can bite for light up to a tangent, the smallest first, which alone counts on the axis.
-pub(super) fn that_bite(mut clips: Vec<Clip>, tangent: f64) -> Vec<Clip> {
+/// Those that can bite for light up to a tangent, the smallest first, which alone counts on the axis. The surface `stop` is
+/// known to be open within `inner` times its radius only.
+pub(super) fn that_bite(mut clips: Vec<Clip>, tangent: f64, stop: usize, inner: f64) -> Vec<Clip> {
     clips.sort_by(|a, b| a.radius.total_cmp(&b.radius));
     let mut kept: Vec<Clip> = Vec::new();
     for clip in clips {
-        if !kept.iter().any(|inner| clip.spares(inner, tangent)) {
+        let inner = if clip.surface == stop { inner } else { 1.0 };
+        let same = |other: &Clip| other.surface == clip.surface && other.inverted == clip.inverted;
+        let spared = |other: &Clip| clip.spares(other, tangent, if same(other) { 1.0 } else { inner });
+        if !kept.iter().any(spared) {
             kept.push(clip);
         }
     }
@@ -78,7 +87,7 @@ mod tests {
     use super::*;
 
     fn clip(center_per_tangent: f64, radius: f64) -> Clip {
-        Clip { center_per_tangent, radius }
+        Clip { surface: 1, inverted: false, center_per_tangent, radius }
     }
 
     #[test]
@@ -123,11 +132,20 @@ mod tests {
     #[test]
     fn what_never_bites_is_left_out_and_what_does_is_not() {
         let clips = vec![clip(0.0, 5.0), clip(2.0, 5.9), clip(2.0, 6.1), clip(0.0, 1.0)];
-        assert_eq!(that_bite(clips.clone(), 0.5), [clip(0.0, 1.0)]);
-        assert_eq!(that_bite(clips[..3].to_vec(), 0.5), [clip(0.0, 5.0), clip(2.0, 5.9)]);
+        assert_eq!(that_bite(clips.clone(), 0.5, 2, 1.0), [clip(0.0, 1.0)]);
+        assert_eq!(that_bite(clips[..3].to_vec(), 0.5, 2, 1.0), [clip(0.0, 5.0), clip(2.0, 5.9)]);
         for tangent in [0.0, 0.2, 0.5] {
-            let kept = that_bite(clips[..3].to_vec(), 0.5);
+            let kept = that_bite(clips[..3].to_vec(), 0.5, 2, 1.0);
             assert!((common_area(&kept, tangent) - common_area(&clips[..3], tangent)).abs() < 1e-12);
         }
+    }
+    #[test]
+    fn an_iris_of_blades_bites_within_its_circle() {
+        let iris = Clip { surface: 2, ..clip(0.0, 5.5) };
+        let hexagon = 30.0_f64.to_radians().cos();
+        let kept = |inner| that_bite(vec![clip(0.0, 5.0), iris], 0.5, 2, inner).len();
+        assert_eq!((kept(1.0), kept(hexagon)), (1, 2));
+        // By itself it is met once, however often light passes it.
+        assert_eq!(that_bite(vec![iris; 3], 0.5, 2, hexagon).len(), 1);
     }
 }

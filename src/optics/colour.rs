@@ -16,6 +16,8 @@ pub struct Sensitivity {
     pub wavelengths: Vec<f64>,
     /// Red, green and blue of each; a few are negative, where a hue is outside of Rec. 709.
     pub weights: Vec<[f64; 3]>,
+    /// The luminance of each; their sum is 1 as well.
+    pub luminance: Vec<f64>,
     /// The mean wavelength of the positive weights of each colour, in nm, at which its rays are taken.
     pub centres: [f64; 3],
 }
@@ -27,6 +29,9 @@ impl Sensitivity {
         let count = ((most - least) / STEP).round() as u32 + 1;
         let wavelengths: Vec<f64> = (0..count).map(|k| least + STEP * f64::from(k)).collect();
         let raw: Vec<_> = wavelengths.iter().map(|&wavelength| rec_709(matching(wavelength))).collect();
+        let luminance: Vec<f64> = wavelengths.iter().map(|&wavelength| matching(wavelength)[1]).collect();
+        let whole = luminance.iter().sum::<f64>();
+        let luminance = luminance.iter().map(|part| part / whole).collect();
         let sum = |c: usize| raw.iter().map(|rgb| rgb[c]).sum::<f64>();
         let sums: [f64; 3] = std::array::from_fn(sum);
         let weights: Vec<[f64; 3]> = raw.iter().map(|rgb| std::array::from_fn(|c| rgb[c] / sums[c])).collect();
@@ -35,24 +40,38 @@ impl Sensitivity {
             positive().map(|(wavelength, weight)| wavelength * weight).sum::<f64>()
                 / positive().map(|(_, w)| w).sum::<f64>()
         });
-        Self { wavelengths, weights, centres }
+        Self { wavelengths, weights, luminance, centres }
     }
 
-    /// The colour of a spectrum that is given at [`Sensitivity::wavelengths`], relative to that of `white`.
+    /// The colour of a spectrum that is given at [`Sensitivity::wavelengths`], relative to that of `white`. Neither is negative.
     ///
-    /// A hue outside of Rec. 709 has its negative parts set to 0.
+    /// A hue outside of Rec. 709, as of a coating that reflects violet and red alone, is paled at the same luminance until
+    /// it is just within.
     pub fn relative(&self, spectrum: &[f64], white: &[f64]) -> [f64; 3] {
-        let colour = |of: &[f64], c: usize| self.weights.iter().zip(of).map(|(rgb, power)| rgb[c] * power).sum::<f64>();
-        std::array::from_fn(|c| {
-            let (part, whole) = (colour(spectrum, c), colour(white, c));
-            if whole > 0.0 { (part / whole).max(0.0) } else { 0.0 }
-        })
+        let ratio = |weight: &dyn Fn(usize) -> f64| {
+            let sum = |of: &[f64]| of.iter().enumerate().map(|(k, power)| weight(k) * power).sum::<f64>();
+            let whole = sum(white);
+            if whole > 0.0 { sum(spectrum) / whole } else { 0.0 }
+        };
+        let colour: [f64; 3] = std::array::from_fn(|c| ratio(&|k| self.weights[k][c]));
+        let grey = ratio(&|k| self.luminance[k]);
+        let least = colour.into_iter().fold(grey, f64::min);
+        if least >= 0.0 {
+            return colour;
+        }
+        let kept = grey / (grey - least);
+        colour.map(|part| (grey + kept * (part - grey)).max(0.0))
     }
 
-    /// The largest part that a spectrum of at most 1 can have in any colour.
-    pub(super) fn most(&self) -> f64 {
-        let positive = |c: usize| self.weights.iter().map(|rgb| rgb[c].max(0.0)).sum::<f64>();
-        (0..3).map(positive).fold(0.0, f64::max)
+    /// No colour of a spectrum that is the product of two, or less, has a larger part than this of that of `white`.
+    pub(super) fn most(&self, one: &[f64], other: &[f64], white: &[f64]) -> f64 {
+        let ratio = |weight: &dyn Fn(usize) -> f64| {
+            let most = one.iter().zip(other).enumerate().map(|(k, (one, other))| weight(k).max(0.0) * one * other);
+            most.sum::<f64>() / white.iter().enumerate().map(|(k, power)| weight(k) * power).sum::<f64>()
+        };
+        let colours = (0..3).map(|c| ratio(&|k| self.weights[k][c]));
+        // Paling raises a colour to the luminance at most.
+        colours.chain([ratio(&|k| self.luminance[k])]).fold(0.0, f64::max)
     }
 }
 
@@ -103,9 +122,25 @@ mod tests {
         assert!((440.0..470.0).contains(&blue), "{:?}", observer.centres);
         let long: Vec<f64> = observer.wavelengths.iter().map(|&w| if w > 600.0 { 1.0 } else { 0.0 }).collect();
         let [red, green, blue] = observer.relative(&long, &white);
-        assert!(red > 0.5 && green < 0.1 && blue < 0.01, "{red} {green} {blue}");
-        let most = observer.most();
-        assert!(most > 1.0 && most < 2.0, "{most}");
+        assert!(red > 0.5 && green < 0.1 && blue < 0.1, "{red} {green} {blue}");
+    }
+
+    #[test]
+    fn a_hue_outside_of_the_primaries_is_paled_at_its_luminance() {
+        let observer = Sensitivity::standard_observer();
+        let white = vec![1.0; observer.wavelengths.len()];
+        for line in [400.0, 450.0, 500.0, 520.0, 700.0] {
+            let spectrum: Vec<f64> = observer.wavelengths.iter().map(|&w| f64::from(u8::from(w == line))).collect();
+            let colour = observer.relative(&spectrum, &white);
+            let most = observer.most(&spectrum, &white, &white);
+            assert!(colour.iter().all(|&part| (0.0..=most).contains(&part)), "{line}: {colour:?}");
+            assert!(colour.iter().any(|&part| part < 1e-15), "{line}: {colour:?} is paler than it has to be");
+            // Rec. 709's luminance, but for white being that of equal energy.
+            let [red, green, blue] = colour;
+            let luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+            let grey: f64 = observer.luminance.iter().zip(&spectrum).map(|(part, power)| part * power).sum();
+            assert!((luminance - grey).abs() < 0.2 * grey + 1e-3, "{line}: {luminance} {grey}");
+        }
     }
 
     #[test]
@@ -116,13 +151,13 @@ mod tests {
         let spectrum: Vec<f64> = observer.wavelengths.iter().map(|&wavelength| ripple(wavelength)).collect();
         let white = vec![1.0; spectrum.len()];
         let found = observer.relative(&spectrum, &white);
-        for c in 0..3 {
+        for (c, found) in found.into_iter().enumerate() {
             let fine = (3800..=7800).map(|k| f64::from(k) * 0.1).map(|wavelength| {
                 let weight = rec_709(matching(wavelength))[c];
                 (weight * ripple(wavelength), weight)
             });
             let (part, whole) = fine.fold((0.0, 0.0), |sum, next| (sum.0 + next.0, sum.1 + next.1));
-            assert!((found[c] - part / whole).abs() < 2e-3, "{c}: {} {}", found[c], part / whole);
+            assert!((found - part / whole).abs() < 2e-3, "{c}: {found} {}", part / whole);
         }
     }
 }

@@ -6,14 +6,16 @@
 //! Along a path, it is at the height A (p − z t) + B t on the sensor, where the pupil is at z and (A B; C D) is the path's
 //! matrix from the first vertex to the sensor; at a rim on the way, in the same form by the matrix to that rim.
 
+mod survey;
+
 use serde::Serialize;
 
 use super::clip::{Clip, common_area, that_bite};
-use super::colour::Sensitivity;
-use super::error::Result;
+use super::error::{OpticsError, Result};
 use super::matrix::RayMatrix;
 use super::path::Path;
 use super::system::System;
+use survey::Survey;
 
 /// Which ghosts are wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -84,24 +86,6 @@ impl GhostPath {
     }
 }
 
-/// What all ghosts of a lens have in common.
-struct Survey<'a> {
-    system: &'a System,
-    observer: Sensitivity,
-    /// Reflectance of each surface at each of the observer's wavelengths, along the axis.
-    reflectances: Vec<Vec<f64>>,
-    /// The light that comes straight through, at each wavelength.
-    direct: Vec<f64>,
-    /// The direct image's area in the pupil, on the axis.
-    area: f64,
-    image_per_tangent: f64,
-    /// The tangent up to which rims count.
-    tangent: f64,
-    /// Indices at the setup's wavelength, and at those of the colours.
-    indices: Vec<f64>,
-    colours: [Vec<f64>; 3],
-}
-
 impl System {
     /// All ghosts of two reflections, and those of four that are strong enough.
     ///
@@ -111,26 +95,25 @@ impl System {
     pub fn ghosts(&self, options: &GhostOptions) -> Result<LensGhosts> {
         let half_field = options.half_field.unwrap_or(self.first_order().half_field);
         options.check(half_field)?;
-        let direct = Path::direct(self);
-        let indices = self.indices(self.setup().wavelength);
-        let (matrix, clips) = clipped(self, &direct, &indices);
-        let tangent = half_field.to_radians().tan();
-        let clips = that_bite(clips, tangent);
-        let survey = Survey::of(self, common_area(&clips, 0.0), self.height_per_tangent(&matrix), tangent, indices);
+        let survey = Survey::of(self, half_field.to_radians().tan());
         let mut ghosts: Vec<GhostPath> =
-            survey.pairs().into_iter().map(|pair| survey.ghost(&pair)).collect::<Result<_>>()?;
+            survey.pairs().iter().map(|pair| survey.ghost(&pair.reflections)).collect::<Result<_>>()?;
         if let Some(least) = options.four_bounces {
             let strong = |ghost: &GhostPath| ghost.share.into_iter().any(|share| share >= least);
             let fours: Vec<GhostPath> =
-                survey.fours(least).into_iter().map(|four| survey.ghost(&four)).collect::<Result<_>>()?;
+                survey.fours(least).iter().map(|four| survey.ghost(four)).collect::<Result<_>>()?;
             ghosts.extend(fours.into_iter().filter(strong));
         }
         // A focused ghost is no smaller than its diffraction.
         let airy = 1.22 * self.setup().wavelength * 1e-6 * self.first_order().f_number;
         let irradiance = |ghost: &GhostPath| ghost.mean_share() / (ghost.radius_mm[1].powi(2) + airy * airy);
         ghosts.sort_by(|a, b| irradiance(b).total_cmp(&irradiance(a)));
-        let (image_per_tangent, wavelengths) = (survey.image_per_tangent, survey.observer.centres);
-        Ok(LensGhosts { image_per_tangent, clips, wavelengths, ghosts })
+        let Survey { image_per_tangent, clips, observer, .. } = survey;
+        Ok(LensGhosts { image_per_tangent, clips, wavelengths: observer.centres, ghosts })
+    }
+
+    fn that_bite(&self, clips: Vec<Clip>, tangent: f64) -> Vec<Clip> {
+        that_bite(clips, tangent, self.stop_number(), self.iris().inner())
     }
 
     /// The height behind a matrix from the first vertex, in mm for a tangent of 1, of a ray through the pupil's centre.
@@ -141,7 +124,7 @@ impl System {
 
 impl GhostOptions {
     fn check(&self, half_field: f64) -> Result<()> {
-        let fault = |reason: String| Err(super::OpticsError::Setup(reason));
+        let fault = |reason: String| Err(OpticsError::Setup(reason));
         if !(0.0..90.0).contains(&half_field) {
             return fault(format!("a half field of {half_field}° is not from 0 to below 90°"));
         }
@@ -159,102 +142,10 @@ pub(super) fn clipped(system: &System, path: &Path, indices: &[f64]) -> (RayMatr
         // Where a rim is conjugate to the light itself, a circle without end passes or stops all of it.
         let a = if matrix.a.abs() < 1e-12 { 1e-12 } else { matrix.a };
         let radius = system.surfaces()[step.surface].semi_aperture / a.abs();
-        clips.push(Clip { center_per_tangent: -system.height_per_tangent(matrix) / a, radius });
+        let center_per_tangent = -system.height_per_tangent(matrix) / a;
+        clips.push(Clip { surface: step.surface + 1, inverted: a < 0.0, center_per_tangent, radius });
     });
     (matrix, clips)
-}
-
-impl<'a> Survey<'a> {
-    fn of(system: &'a System, area: f64, image_per_tangent: f64, tangent: f64, indices: Vec<f64>) -> Self {
-        let observer = Sensitivity::standard_observer();
-        let media: Vec<_> = observer.wavelengths.iter().map(|&wavelength| system.indices(wavelength)).collect();
-        let surfaces = system.surfaces().iter().enumerate();
-        let reflectances: Vec<Vec<f64>> = surfaces
-            .map(|(k, surface)| {
-                let at =
-                    |(media, &wavelength): (&Vec<f64>, &f64)| surface.reflectance(media[k], media[k + 1], wavelength);
-                media.iter().zip(&observer.wavelengths).map(at).collect()
-            })
-            .collect();
-        let colours = observer.centres.map(|wavelength| system.indices(wavelength));
-        let mut survey = Self {
-            system,
-            observer,
-            reflectances,
-            direct: Vec::new(),
-            area,
-            image_per_tangent,
-            tangent,
-            indices,
-            colours,
-        };
-        survey.direct = survey.spectrum(&Path::direct(system));
-        survey
-    }
-
-    /// The part of the light that a path leaves at each wavelength, along the axis.
-    fn spectrum(&self, path: &Path) -> Vec<f64> {
-        let mut spectrum = vec![1.0; self.observer.wavelengths.len()];
-        for step in path.steps() {
-            for (power, reflectance) in spectrum.iter_mut().zip(&self.reflectances[step.surface]) {
-                *power *= if step.reflects { *reflectance } else { 1.0 - reflectance };
-            }
-        }
-        spectrum
-    }
-
-    /// The largest reflectance of each surface that reflects at all, by its number.
-    fn mirrors(&self) -> Vec<(usize, f64)> {
-        let largest = |of: &Vec<f64>| of.iter().copied().fold(0.0, f64::max);
-        // Less is rounding between equal media.
-        (1..).zip(self.reflectances.iter().map(largest)).filter(|&(_, reflectance)| reflectance > 1e-12).collect()
-    }
-
-    /// The reflections of all pairs.
-    fn pairs(&self) -> Vec<[usize; 2]> {
-        let mirrors = self.mirrors();
-        let pairs = mirrors.iter().enumerate().flat_map(|(k, &(b, _))| mirrors[..k].iter().map(move |&(a, _)| [b, a]));
-        pairs.collect()
-    }
-
-    /// The reflections of all paths of four whose share can be so large.
-    fn fours(&self, least: f64) -> Vec<[usize; 4]> {
-        let mirrors = self.mirrors();
-        // Light passes every surface that it is reflected by as well, as the direct light does; of the pupil, a ghost
-        // has at most what the first rim lets in.
-        let first = self.system.surfaces().first().map_or(0.0, |surface| surface.semi_aperture);
-        let most = self.observer.most() * (std::f64::consts::PI * first * first / self.area).max(1.0);
-        let mut fours = Vec::new();
-        for (k, &(b, at_b)) in mirrors.iter().enumerate() {
-            for (l, &(a, at_a)) in mirrors[..k].iter().enumerate() {
-                for (m, &(d, at_d)) in mirrors.iter().enumerate().skip(l + 1) {
-                    let strong = mirrors[..m].iter().filter(|&&(_, at_c)| most * at_a * at_b * at_c * at_d >= least);
-                    fours.extend(strong.map(|&(c, _)| [b, a, d, c]));
-                }
-            }
-        }
-        fours
-    }
-
-    fn ghost(&self, reflections: &[usize]) -> Result<GhostPath> {
-        let path = Path::new(self.system, reflections)?;
-        let (matrix, clips) = clipped(self.system, &path, &self.indices);
-        let clips = that_bite(clips, self.tangent);
-        let axial = clips.first().map_or(0.0, |clip| clip.radius);
-        let by_colour = self.colours.each_ref().map(|indices| self.system.matrix(&path, indices));
-        let area = std::f64::consts::PI * axial * axial / self.area;
-        let share = self.observer.relative(&self.spectrum(&path), &self.direct).map(|part| part * area);
-        let focus = -self.indices.last().copied().unwrap_or(1.0) * matrix.a / matrix.c;
-        Ok(GhostPath {
-            reflections: path.reflections(),
-            magnification: by_colour.map(|matrix| self.system.height_per_tangent(&matrix) / self.image_per_tangent),
-            scale: by_colour.map(|matrix| matrix.a),
-            radius_mm: by_colour.map(|matrix| matrix.a.abs() * axial),
-            share,
-            focus_mm: Some(focus).filter(|focus| focus.is_finite()),
-            clips,
-        })
-    }
 }
 
 #[cfg(test)]

@@ -1,4 +1,21 @@
-//! A lens as its maker knows it: surfaces, glasses, coatings.
+//! A lens as its maker knows it, and the ghosts that follow from its surfaces. All in f64; no GL.
+//!
+//! | module | from → to |
+//! | --- | --- |
+//! | `read`, `prescription` | a file → the table of a lens's surfaces |
+//! | `glass`, `coating`, `thin_film` | a medium → its index; films → what they reflect |
+//! | `setup`, `system`, `first_order` | a table, f-number, focus, sensor → where all is, and what paraxial optics says of it |
+//! | `path`, `matrix` | the surfaces that reflect light on its way → what that way does to rays near the axis |
+//! | `ghosts`, `clip`, `colour` | a system → its ghosts: place, size, share of the light, and the rims that cut them |
+//! | `trace`, `spot` | a ray → where it goes, exactly; a distant light → its image, by many of them |
+//!
+//! Lengths are in mm, wavelengths in nm, angles in degrees unless they are said to be tangents. Surfaces are numbered from 1,
+//! as in files. The axis is z, from the scene to the sensor; a radius is positive where its centre lies towards the sensor,
+//! and a light whose direction leans towards positive x has its image there.
+//!
+//! The model: surfaces of revolution about one axis, spheres and conics; media without absorption; rays, not waves, save
+//! within the films of a coating; distant lights. The sensor reflects nothing, and neither do barrel and blades.
+
 mod clip;
 mod coating;
 mod colour;
@@ -6,6 +23,8 @@ mod error;
 mod first_order;
 mod ghosts;
 mod glass;
+#[cfg(test)]
+mod golden;
 mod matrix;
 mod path;
 mod prescription;
@@ -30,7 +49,7 @@ pub use read::LensFormat;
 pub use setup::Setup;
 pub use spot::Spot;
 pub use system::{OpticalSurface, System};
-pub use thin_film::{Layer, Polarised, Response, response};
+pub use thin_film::{Amplitudes, Layer, Polarised, Response, amplitudes, response};
 pub use trace::{Hit, Tracer, direction};
 
 #[cfg(test)]

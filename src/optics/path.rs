@@ -109,7 +109,7 @@ mod tests {
         for reflections in [&[][..], &[3, 2], &[3, 2, 3, 2]] {
             assert_eq!(Path::new(&system, reflections).unwrap().reflections(), reflections);
         }
-        for reflections in [&[3][..], &[2, 3], &[2, 2], &[4, 1], &[1, 0], &[3, 2, 1, 2]] {
+        for reflections in [&[3][..], &[2, 3], &[2, 2], &[4, 1], &[1, 0], &[3, 2, 1, 2], &[3, 2, 2, 1]] {
             assert!(Path::new(&system, reflections).is_err(), "{reflections:?}");
         }
     }

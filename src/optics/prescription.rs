@@ -127,6 +127,14 @@ impl Default for Iris {
     }
 }
 
+impl Iris {
+    /// The radius of the largest circle within the opening, of the one through its corners.
+    pub fn inner(&self) -> f64 {
+        let straight = self.blades.map_or(1.0, |blades| (std::f64::consts::PI / f64::from(blades.max(3))).cos());
+        straight + (1.0 - straight) * self.roundness.clamp(0.0, 1.0)
+    }
+}
+
 impl Surface {
     /// A plane in air: where a stop stands.
     pub fn plane(thickness: Option<f64>, semi_aperture: f64) -> Self {
@@ -336,6 +344,13 @@ mod tests {
         lens.settings[0].thickness = BTreeMap::from([(4, 9.0)]);
         assert!(lens.check().unwrap_err().to_string().contains("no surface 4; there are 3"));
         assert!(lens.setting("long").is_err());
+    }
+
+    #[test]
+    fn an_iris_is_open_to_the_middles_of_its_blades() {
+        let iris = |blades, roundness| Iris { blades, rotation: 0.0, roundness };
+        assert!((iris(Some(6), 0.0).inner() - 0.75_f64.sqrt()).abs() < 1e-15);
+        assert_eq!((iris(None, 0.0).inner(), iris(Some(5), 1.0).inner()), (1.0, 1.0));
     }
 
     #[test]

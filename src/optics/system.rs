@@ -6,7 +6,7 @@ use super::first_order::FirstOrder;
 use super::glass::Glass;
 use super::matrix::RayMatrix;
 use super::path::{Path, Step};
-use super::prescription::{Prescription, Surface};
+use super::prescription::{Iris, Prescription, Surface};
 use super::setup::Setup;
 use super::thin_film::{Layer, response};
 
@@ -18,6 +18,7 @@ pub struct System {
     surfaces: Vec<OpticalSurface>,
     /// The stop's index, from 0.
     stop: usize,
+    iris: Iris,
     /// Where the sensor is.
     sensor_z: f64,
     first_order: FirstOrder,
@@ -58,7 +59,7 @@ impl System {
         surfaces[stop].semi_aperture = semi_aperture;
         let last = surfaces.last().map_or(0.0, |surface| surface.z);
         let sensor_z = last + first_order.sensor_distance;
-        Ok(Self { name: lens.name.clone(), setup: *setup, surfaces, stop, sensor_z, first_order })
+        Ok(Self { name: lens.name.clone(), setup: *setup, surfaces, stop, iris: lens.iris, sensor_z, first_order })
     }
 
     /// The lens's name.
@@ -79,6 +80,11 @@ impl System {
     /// The number of the stop, from 1.
     pub fn stop_number(&self) -> usize {
         self.stop + 1
+    }
+
+    /// The shape of the stop's opening. Its corners are on the circle of the stop's semi-aperture; rays take it for that circle.
+    pub fn iris(&self) -> Iris {
+        self.iris
     }
 
     /// The sensor's place on the axis, in mm.

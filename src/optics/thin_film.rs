@@ -40,9 +40,33 @@ pub struct Response {
     pub transmittance: Polarised,
 }
 
+/// What becomes of a polarisation's electric field along the surface, in amplitude and phase; in transmission by the square
+/// root of the power, so that the squares of both add up to 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Amplitudes {
+    /// Of the reflected field.
+    pub reflected: Complex64,
+    /// Of the field that goes through.
+    pub transmitted: Complex64,
+}
+
+impl Amplitudes {
+    const REFLECTED: Self = Self { reflected: Complex64::new(-1.0, 0.0), transmitted: Complex64::ZERO };
+}
+
 /// What `layers`, the first of which the light meets first, between media of the indices `front` and `back` do to light of
 /// the wavelength `wavelength` in nm, whose angle from the normal in `front` has the cosine `cosine`, 0 to 1.
 pub fn response(front: f64, layers: &[Layer], back: f64, wavelength: f64, cosine: f64) -> Response {
+    let [s, p] = amplitudes(front, layers, back, wavelength, cosine);
+    let power = |amplitude: fn(&Amplitudes) -> Complex64| Polarised {
+        s: amplitude(&s).norm_sqr().min(1.0),
+        p: amplitude(&p).norm_sqr().min(1.0),
+    };
+    Response { reflectance: power(|of| of.reflected), transmittance: power(|of| of.transmitted) }
+}
+
+/// The same in amplitudes, of s and of p.
+pub fn amplitudes(front: f64, layers: &[Layer], back: f64, wavelength: f64, cosine: f64) -> [Amplitudes; 2] {
     let cosine = cosine.clamp(0.0, 1.0);
     let into = |index: f64| {
         // Snell's law for the squared cosine, without the difference that loses grazing light between like media.
@@ -61,7 +85,7 @@ pub fn response(front: f64, layers: &[Layer], back: f64, wavelength: f64, cosine
             decay -= phase.im;
             if decay > 300.0 {
                 // Less than exp(-600) goes through, and the fields outgrow their numbers.
-                return (1.0, 0.0);
+                return Amplitudes::REFLECTED;
             }
             let (sine, cosine_of_phase) = sine_and_cosine(phase);
             let own = admittance(index, cosine);
@@ -70,10 +94,9 @@ pub fn response(front: f64, layers: &[Layer], back: f64, wavelength: f64, cosine
                 Complex64::I * own * sine * electric + cosine_of_phase * magnetic,
             );
         }
-        powers(admittance(front, Complex64::new(cosine, 0.0)), electric, magnetic, last)
+        at_front(admittance(front, Complex64::new(cosine, 0.0)), electric, magnetic, last)
     };
-    let (s, p) = (polarised(|index, cosine| index * cosine), polarised(|index, cosine| index / cosine));
-    Response { reflectance: Polarised { s: s.0, p: p.0 }, transmittance: Polarised { s: s.1, p: p.1 } }
+    [polarised(|index, cosine| index * cosine), polarised(|index, cosine| index / cosine)]
 }
 
 /// Of a phase that is real, or negative imaginary.
@@ -82,16 +105,15 @@ fn sine_and_cosine(phase: Complex64) -> (Complex64, Complex64) {
     if phase.im == 0.0 { (re(phase.re.sin()), re(phase.re.cos())) } else { (im(phase.im.sinh()), re(phase.im.cosh())) }
 }
 
-/// The power that is reflected and that goes through, of fields at the front that belong to an electric field of 1 behind.
-fn powers(first: Complex64, electric: Complex64, magnetic: Complex64, last: Complex64) -> (f64, f64) {
+/// The amplitudes of fields at the front that belong to an electric field of 1 behind.
+fn at_front(first: Complex64, electric: Complex64, magnetic: Complex64, last: Complex64) -> Amplitudes {
     // Grazing light: the admittance of p is infinite, that of s is 0; all is reflected.
     if !first.is_finite() || !last.is_finite() || first.norm_sqr() == 0.0 {
-        return (1.0, 0.0);
+        return Amplitudes::REFLECTED;
     }
     let denominator = first * electric + magnetic;
-    let reflected = ((first * electric - magnetic) / denominator).norm_sqr();
-    let through = 4.0 * first.re * last.re / denominator.norm_sqr();
-    (reflected.min(1.0), through.clamp(0.0, 1.0))
+    let through = 2.0 * (first.re * last.re.max(0.0)).sqrt();
+    Amplitudes { reflected: (first * electric - magnetic) / denominator, transmitted: through / denominator }
 }
 
 #[cfg(test)]

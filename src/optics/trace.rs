@@ -1,16 +1,18 @@
 //! Rays traced through a lens one surface after the other, exactly: spheres and conics, Snell's law in vectors.
 //!
 //! What lies between two surfaces is a straight line, in whichever order surfaces meet beyond their rims. A ray is lost
-//! where it misses a surface or its rim, and where all of it is reflected that should go through. Each surface weighs it
-//! with what it does to unpolarised light, whatever surfaces before it have polarised.
+//! where it misses a surface or its rim, and where all of it is reflected that should go through. Its power is that of
+//! unpolarised light, as two crossed polarisations whose fields are followed as vectors: surfaces that light meets
+//! at an angle polarise it for those that follow (Chipman, "Polarization ray tracing", Optical Engineering 34(6), 1995).
 
 use glam::{DVec2, DVec3};
+use num_complex::Complex64;
 
 use super::error::Result;
 use super::path::{Path, Step};
 use super::setup::check_wavelength;
 use super::system::{OpticalSurface, System};
-use super::thin_film::{Layer, response};
+use super::thin_film::{Layer, amplitudes};
 
 /// Traces light of one wavelength.
 #[derive(Debug, Clone)]
@@ -27,7 +29,7 @@ pub struct Tracer<'a> {
 pub struct Hit {
     /// From the axis, in mm.
     pub position: DVec2,
-    /// The part of its power that arrives.
+    /// The part of its power that arrives, of unpolarised light.
     pub weight: f64,
 }
 
@@ -36,6 +38,20 @@ pub struct Hit {
 struct Ray {
     origin: DVec3,
     direction: DVec3,
+}
+
+/// A complex electric field; of power 1 where its square is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Field {
+    re: DVec3,
+    im: DVec3,
+}
+
+/// A ray, and the fields along it of light that came in two crossed polarisations.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Light {
+    ray: Ray,
+    fields: [Field; 2],
 }
 
 /// The direction, of length 1, of light that comes in at `angle` degrees from the axis and makes its image on the side of
@@ -76,34 +92,60 @@ impl<'a> Tracer<'a> {
             return None;
         }
         let at_pupil = pupil.extend(self.system.first_order().entrance_pupil.z);
-        let mut ray = Ray { origin: at_pupil - direction * (at_pupil.z / direction.z), direction };
-        let mut weight = 1.0;
+        let origin = at_pupil - direction * (at_pupil.z / direction.z);
+        let fields = <[DVec3; 2]>::from(direction.any_orthonormal_pair()).map(Field::real);
+        let mut light = Light { ray: Ray { origin, direction }, fields };
         for step in steps {
-            let part;
-            (ray, part) = self.step(step, ray)?;
-            weight *= part;
+            light = self.step(step, &light)?;
         }
-        let there = (self.system.sensor_z() - ray.origin.z) / ray.direction.z;
-        let position = (ray.origin + ray.direction * there).truncate();
-        (ray.direction.z > 0.0 && position.is_finite() && weight > 0.0).then_some(Hit { position, weight })
+        let Ray { origin, direction } = light.ray;
+        let position = (origin + direction * ((self.system.sensor_z() - origin.z) / direction.z)).truncate();
+        let weight = 0.5 * light.fields.iter().map(Field::power).sum::<f64>();
+        (direction.z > 0.0 && position.is_finite() && weight > 0.0).then_some(Hit { position, weight })
     }
 
-    /// The ray behind a surface, and the part of its power that it keeps.
-    fn step(&self, step: &Step, ray: Ray) -> Option<(Ray, f64)> {
+    /// The light behind a surface.
+    fn step(&self, step: &Step, light: &Light) -> Option<Light> {
         let surface = &self.system.surfaces()[step.surface];
-        let (point, normal) = surface.meet(ray, step.forward)?;
+        let incident = light.ray.direction;
+        let (origin, normal) = surface.meet(light.ray, step.forward)?;
         let indices = [self.indices[step.surface], self.indices[step.surface + 1]];
         let ([before, behind], layers) = match step.forward {
             true => (indices, &surface.layers),
             false => ([indices[1], indices[0]], &self.from_behind[step.surface]),
         };
-        let cosine = normal.dot(ray.direction);
-        let response = response(before, layers, behind, self.wavelength, cosine);
-        let (direction, part) = match step.reflects {
-            true => (ray.direction - 2.0 * cosine * normal, response.reflectance.mean()),
-            false => (refract(ray.direction, normal, before / behind)?, response.transmittance.mean()),
+        let cosine = normal.dot(incident);
+        let [s, p] = amplitudes(before, layers, behind, self.wavelength, cosine);
+        let (direction, [s, p]) = match step.reflects {
+            // Of p, the part along the surface is turned against the vector of p.
+            true => (incident - 2.0 * cosine * normal, [s.reflected, -p.reflected]),
+            false => (refract(incident, normal, before / behind)?, [s.transmitted, p.transmitted]),
         };
-        Some((Ray { origin: point, direction: direction.normalize() }, part))
+        let direction = direction.normalize();
+        let across = incident.cross(normal).try_normalize().unwrap_or_else(|| incident.any_orthonormal_vector());
+        let [old, new] = [incident, direction].map(|way| across.cross(way));
+        let fields = light.fields.map(|field| field.turned([across, old], [across, new], [s, p]));
+        Some(Light { ray: Ray { origin, direction }, fields })
+    }
+}
+
+impl Field {
+    fn real(re: DVec3) -> Self {
+        Self { re, im: DVec3::ZERO }
+    }
+
+    fn along(&self, axis: DVec3) -> Complex64 {
+        Complex64::new(self.re.dot(axis), self.im.dot(axis))
+    }
+
+    fn power(&self) -> f64 {
+        self.re.length_squared() + self.im.length_squared()
+    }
+
+    /// The field whose parts along `from` become so many times themselves along `to`.
+    fn turned(&self, from: [DVec3; 2], to: [DVec3; 2], by: [Complex64; 2]) -> Self {
+        let [s, p] = [by[0] * self.along(from[0]), by[1] * self.along(from[1])];
+        Self { re: s.re * to[0] + p.re * to[1], im: s.im * to[0] + p.im * to[1] }
     }
 }
 

@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 
 /// Modules that know nothing of GL, windows and the command line.
-const PURE: [&str; 14] = [
+const PURE: [&str; 15] = [
     "choices",
     "compare",
     "error",
     "frame",
     "look",
+    "optics",
     "photo",
     "plan",
     "problem",

@@ -3,11 +3,11 @@
 //!
 //! A radius of 0 is a plane, and one between air and air the stop; an index of 0 is that of air.
 
-use super::super::coating::Coating;
-use super::super::error::{OpticsError, Result};
-use super::super::glass::Glass;
-use super::super::prescription::{Iris, Origin, Prescription, Surface};
 use super::number;
+use crate::optics::coating::Coating;
+use crate::optics::error::{OpticsError, Result};
+use crate::optics::glass::Glass;
+use crate::optics::prescription::{Iris, Origin, Prescription, Surface};
 
 pub(super) fn parse(text: &str, origin: &mut Origin) -> Result<Prescription> {
     let mut comments = Vec::new();

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::super::coating::Coating;
-use super::super::error::{OpticsError, Result};
-use super::super::glass::Glass;
-use super::super::prescription::{Iris, Origin, Prescription, Setting, Surface};
+use crate::optics::coating::Coating;
+use crate::optics::error::{OpticsError, Result};
+use crate::optics::glass::Glass;
+use crate::optics::prescription::{Iris, Origin, Prescription, Setting, Surface};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]

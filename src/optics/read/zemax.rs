@@ -6,10 +6,10 @@
 
 mod surface;
 
-use super::super::coating::Coating;
-use super::super::error::{OpticsError, Result};
-use super::super::prescription::{Iris, Origin, Prescription, Surface};
 use super::number;
+use crate::optics::coating::Coating;
+use crate::optics::error::{OpticsError, Result};
+use crate::optics::prescription::{Iris, Origin, Prescription, Surface};
 use surface::{OfSurface, SurfaceText, of_surface};
 
 /// A line of the file.
@@ -145,8 +145,8 @@ fn lens(header: Header, mut surfaces: Vec<SurfaceText>, origin: &mut Origin) -> 
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::glass::Glass;
     use super::*;
+    use crate::optics::glass::Glass;
 
     const LENS: &str = "VERS 90111 0 25 27471\nMODE SEQ\nNAME Test lens\nUNIT MM X W X CM MR CPMM\nENPD 10\nWAVM 1 0.5876 1\n\
         MNUM 1 1\nSURF 0\n  TYPE STANDARD\n  CURV 0.0 0 0 0 0 \"\"\n  DISZ INFINITY\n  DIAM 0 0 0 0 1 \"\"\n\

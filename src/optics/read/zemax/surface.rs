@@ -1,10 +1,10 @@
 //! A surface of a Zemax file.
 
-use super::super::super::coating::Coating;
-use super::super::super::error::{OpticsError, Result};
-use super::super::super::glass::Glass;
-use super::super::super::prescription::{Origin, Surface};
 use super::Line;
+use crate::optics::coating::Coating;
+use crate::optics::error::{OpticsError, Result};
+use crate::optics::glass::Glass;
+use crate::optics::prescription::{Origin, Surface};
 
 /// What a keyword is to a surface.
 #[derive(Clone, Copy, PartialEq, Eq)]
