@@ -44,7 +44,9 @@ pub(super) fn bands(problem: &Problem, weighed: &Weighed, groups: &[Group], budg
         groups.iter().cloned().partition(|group| matches!(group.transform, Transform::Photo(_)));
     let of_others = period::reaches_of_ghosts(problem, weighed);
     let least = ROOM * 2.0 * farthest(problem.frame());
-    let needed = |reaches: &[Reach]| period::shortest(reaches, budget).max(least);
+    // Each within its part, so that those of a band are within theirs in the longest of their periods.
+    let part = budget / (images.len() + 1) as f64;
+    let needed = |reaches: &[Reach]| period::shortest(reaches, part).max(least);
     let mut found: Vec<Band> = images
         .into_iter()
         .map(|group| {
@@ -57,28 +59,31 @@ pub(super) fn bands(problem: &Problem, weighed: &Weighed, groups: &[Group], budg
     let mut smallest = 0.0;
     for band in found {
         match bands.last_mut().filter(|_| band.area() <= LARGER * smallest) {
-            Some(last) => {
-                last.groups.extend(band.groups);
-                last.reaches.extend(band.reaches);
-            }
+            Some(last) => last.join(band),
             None => {
                 smallest = band.area();
                 bands.push(band);
             }
         }
     }
-    if let Some(first) = bands.first_mut() {
-        first.groups.extend(others);
-        first.reaches.extend(of_others);
+    if let Some(first) = bands.first_mut().filter(|_| !others.is_empty()) {
+        first.join(Band { period: needed(&of_others), groups: others, reaches: of_others });
     }
-    let shared = budget / bands.len().max(1) as f64;
-    // Into one alone nothing is folded.
-    let least = if bands.len() > 1 { least } else { DVec2::ZERO };
-    bands.iter_mut().for_each(|band| band.period = period::shortest(&band.reaches, shared).max(least));
+    if let [only] = &mut bands[..] {
+        // Nothing is folded into it.
+        only.period = period::shortest(&only.reaches, budget);
+    }
     bands
 }
 
 impl Band {
+    /// Takes up another, in the longer of both periods.
+    fn join(&mut self, other: Self) {
+        self.groups.extend(other.groups);
+        self.reaches.extend(other.reaches);
+        self.period = self.period.max(other.period);
+    }
+
     fn area(&self) -> f64 {
         self.period.element_product()
     }
@@ -191,7 +196,14 @@ impl Window {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
+    use crate::chance::Chance;
+    use crate::plan::Request;
+    use crate::problem::Images;
+    use crate::raster::Raster;
+    use crate::scene::{Optical, OpticsSection};
 
     /// A few waves of one period are themselves in another, within the bound, at every pixel; and the bound is of their size.
     #[test]
@@ -218,6 +230,35 @@ mod tests {
                     worst = worst.max((sum(new, &folded.terms, at, into) - wanted).abs());
                 }
                 assert!(worst <= folded.error && worst > 1e-4 * folded.error, "{budget}: {worst} {}", folded.error);
+            }
+        }
+    }
+
+    /// Ghosts of a real lens, from points to such as are larger than the picture: one series, and it is the sum over all pixels and
+    /// ghosts.
+    #[test]
+    fn ghosts_of_a_real_lens_are_one_series() {
+        let frame = Frame::full(96, 54);
+        let mut chance = Chance::new(7);
+        let mut pixels = vec![[0.02, 0.03, 0.04, 1.0]; frame.window.pixels()];
+        for lamp in [1000, 2611, 4790] {
+            pixels[lamp] = [0, 1, 2, 3].map(|_| chance.between(20.0, 90.0) as f32);
+        }
+        let raster = Raster::new(&pixels, frame).unwrap();
+        let section = OpticsSection { lens: Some("double-gauss".into()), ..OpticsSection::default() };
+        let lens = Optical::new(section).unwrap().fitted(&frame);
+        let images = Arc::new(Images::new(raster, &lens.lens().ghosts, DVec2::new(0.1, -0.05), 1.0, [1.0; 3]));
+        let problem = Problem::with_images(Vec::new(), images.clone(), frame);
+        for tolerance in [1e-2, 1e-3] {
+            let plan = crate::plan::plan(&problem, &Request::new(tolerance)).unwrap();
+            assert!(plan.predicted.total() <= tolerance);
+            let series = plan.series().unwrap();
+            let kept: Vec<Mode> = series.modes.as_ref().unwrap().kept(&series.counts).collect();
+            let points: Vec<DVec2> = (0..40).map(|k| frame.position(f64::from(k * 37 % 96), f64::from(k * 23 % 54))).collect();
+            for (at, truth) in points.iter().zip(images.at(&points)) {
+                let places = series.counts.iter().enumerate().flat_map(|(n, &c)| (0..c as usize).map(move |m| (n, m)));
+                let error = (sum(places, &kept, *at, series.period) - truth[1] / plan.scale[1]).abs();
+                assert!(error <= plan.predicted.total(), "{tolerance} at {at}: {error}");
             }
         }
     }
