@@ -5,6 +5,10 @@
 //! A ray of a distant light meets the plane of the entrance pupil at p, in mm, and has the tangent t of the light's angle.
 //! Along a path, it is at the height A (p − z t) + B t on the sensor, where the pupil is at z and (A B; C D) is the path's
 //! matrix from the first vertex to the sensor; at a rim on the way, in the same form by the matrix to that rim.
+//!
+//! What that leaves out is aberration: wide open, real rays of a ghost meet rims that paraxial ones clear. Beside optiland's
+//! rays through seven lenses (`tests/golden-optics`), the light of all ghosts together on the axis is 0 to 24 % too much.
+//! [`super::Tracer::spot`] has the truth of each.
 
 mod survey;
 
