@@ -117,6 +117,9 @@ mod tests {
         for part in observer.relative(&grey, &white) {
             assert!((part - 0.1).abs() < 1e-15);
         }
+        for sum in (0..3).map(|c| observer.weights.iter().map(|rgb| rgb[c]).sum::<f64>()) {
+            assert!((sum - 1.0).abs() < 1e-12);
+        }
         let [red, green, blue] = observer.centres;
         assert!((590.0..620.0).contains(&red) && (530.0..560.0).contains(&green), "{:?}", observer.centres);
         assert!((440.0..470.0).contains(&blue), "{:?}", observer.centres);

@@ -238,6 +238,17 @@ mod tests {
     }
 
     #[test]
+    fn the_exit_pupil_of_a_stop_in_front_is_seen_through_the_lens() {
+        // 20 mm before a thin lens of 50 mm: a virtual image at 1/(1/50 − 1/20), larger by the quotient of the distances.
+        let mut lens = thin(50.0, 20.0);
+        lens.surfaces[0].stop = false;
+        lens.surfaces.insert(0, Surface { stop: true, ..Surface::plane(Some(20.0), 3.0) });
+        let Pupil { z, radius } = first_order(&lens, Setup::default()).exit_pupil.unwrap();
+        let place = 1.0 / (1.0 / 50.0 - 1.0 / 20.0);
+        assert!((z - place).abs() < 1e-12 && (radius + 3.0 * place / 20.0).abs() < 1e-12, "{z} {radius}");
+    }
+
+    #[test]
     fn a_stop_in_the_front_focus_is_telecentric_behind() {
         let mut lens = thin(50.0, 10.0);
         lens.surfaces[0].stop = false;

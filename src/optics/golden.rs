@@ -164,6 +164,19 @@ impl Worst {
 }
 
 #[test]
+fn all_ghosts_together_have_nearly_the_light_of_optilands() {
+    for name in LENSES {
+        let (system, golden) = lens(name);
+        let ours: f64 =
+            system.ghosts(&GhostOptions::default()).unwrap().ghosts.iter().map(|ghost| ghost.share[1]).sum();
+        let rays: f64 = golden.pairs.iter().map(|pair| pair.fields[0].front.flux).sum();
+        let ratio = ours * golden.picture[0].front.flux / rays;
+        println!("{name}: {ratio:.3}");
+        assert!((0.99..1.25).contains(&ratio), "{name}: {ratio}");
+    }
+}
+
+#[test]
 fn off_the_axis_every_ray_goes_where_optiland_has_it() {
     std::thread::scope(|scope| {
         for name in LENSES {

@@ -9,7 +9,7 @@ pub(super) const WAVELENGTHS: [f64; 2] = [300.0, 1200.0];
 /// How a lens is used.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setup {
-    /// The f-number to which the stop is closed; none for wide open.
+    /// The f-number to which the stop is closed; none for wide open, for which one up to 1 % wider is taken as well.
     pub fstop: Option<f64>,
     /// The distance from the sensor to what is in focus, in m; none for infinity.
     pub focus: Option<f64>,

@@ -290,6 +290,31 @@ mod tests {
     }
 
     #[test]
+    fn off_the_axis_a_ghost_is_the_circle_of_its_narrowest_rim() {
+        // So little off that no other rim bites, and aberrations are small.
+        let (system, angle) = (system(&double_gauss(), Some(22.0)), 0.5_f64);
+        let tangent = angle.to_radians().tan();
+        let tracer = Tracer::new(&system, LINE_D).unwrap();
+        let found = system.ghosts(&GhostOptions::default()).unwrap();
+        let (mut compared, mut elsewhere) = (0, 0);
+        for ghost in &found.ghosts {
+            let path = Path::new(&system, &ghost.reflections).unwrap();
+            let spot = tracer.spot(&path, direction(angle), 2000, 7).unwrap();
+            let (centre, radius) = ghost.on_sensor(&ghost.clips[0], tangent, found.image_per_tangent * tangent);
+            if (ghost.vignetting(tangent) - 1.0).abs() > 1e-9 {
+                continue;
+            }
+            compared += 1;
+            assert!((spot.centroid.x - centre).abs() < 0.1 * radius + 0.02, "{ghost:?}: {spot:?}");
+            assert!((spot.rms * 2.0_f64.sqrt() - radius).abs() < 0.06 * radius + 0.02, "{ghost:?}: {spot:?}");
+            let from_pupil = ghost.scale[1] * ghost.clips[0].center_per_tangent * tangent;
+            elsewhere += usize::from(from_pupil.abs() > 0.2 * radius + 0.04);
+        }
+        println!("{compared} compared, of which {elsewhere} are not about the ray through the pupil's centre");
+        assert!(compared > 35 && elsewhere > 3, "{compared} {elsewhere}");
+    }
+
+    #[test]
     fn the_same_seed_gives_the_same_spot_and_another_one_near_it() {
         let system = system(&double_gauss(), None);
         let tracer = Tracer::new(&system, LINE_D).unwrap();

@@ -102,8 +102,8 @@ impl System {
         indices(&self.surfaces, wavelength)
     }
 
-    /// The matrix from the first vertex to the sensor along a path, whose indices are those of [`System::indices`].
-    pub fn matrix(&self, path: &Path, indices: &[f64]) -> RayMatrix {
+    /// The matrix from the first vertex to the sensor along a path of this lens, for indices of [`System::indices`].
+    pub(super) fn matrix(&self, path: &Path, indices: &[f64]) -> RayMatrix {
         self.walk(&path.steps(), indices, |_, _| {})
     }
 

@@ -6,6 +6,7 @@ use super::{GhostPath, clipped};
 use crate::optics::clip::{Clip, common_area};
 use crate::optics::colour::Sensitivity;
 use crate::optics::error::Result;
+use crate::optics::matrix::RayMatrix;
 use crate::optics::path::Path;
 use crate::optics::system::System;
 
@@ -115,14 +116,15 @@ impl<'a> Survey<'a> {
         let path = Path::new(self.system, reflections)?;
         let (matrix, clips) = clipped(self.system, &path, &self.indices);
         let clips = self.system.that_bite(clips, self.tangent);
-        let axial = clips.first().map_or(0.0, |clip| clip.radius);
+        let (axial, centre) = clips.first().map_or((0.0, 0.0), |clip| (clip.radius, clip.center_per_tangent));
         let by_colour = self.colours.each_ref().map(|indices| self.system.matrix(&path, indices));
         let area = PI * axial * axial / self.area;
         let share = self.observer.relative(&self.spectrum(&path), &self.direct).map(|part| part * area);
         let focus = -self.indices.last().copied().unwrap_or(1.0) * matrix.a / matrix.c;
+        let place = |matrix: RayMatrix| self.system.height_per_tangent(&matrix) + matrix.a * centre;
         Ok(GhostPath {
             reflections: path.reflections(),
-            magnification: by_colour.map(|matrix| self.system.height_per_tangent(&matrix) / self.image_per_tangent),
+            magnification: by_colour.map(|matrix| place(matrix) / self.image_per_tangent),
             scale: by_colour.map(|matrix| matrix.a),
             radius_mm: by_colour.map(|matrix| matrix.a.abs() * axial),
             share,
