@@ -214,7 +214,8 @@ mod tests {
             .map(|k| [0, 1, 2].map(|c| [0, 1, 2, 3].map(|t| ((7 * k + 3 * c + 5 * t + 1) as f64).sin())))
             .collect();
         let modes = Modes::new(counts, modes, 0.0);
-        for (from, into) in [(DVec2::new(9.0, 7.0), DVec2::new(4.6, 2.7)), (DVec2::new(3.1, 2.9), DVec2::new(5.0, 3.0))] {
+        for (from, into) in [(DVec2::new(9.0, 7.0), DVec2::new(4.6, 2.7)), (DVec2::new(3.1, 2.9), DVec2::new(5.0, 3.0))]
+        {
             for budget in [1e-2, 1e-5, 1e-8] {
                 let folded = fold(&modes, from, into, frame, budget);
                 let [columns, rows] = folded.harmonics;
@@ -224,7 +225,8 @@ mod tests {
                 let mut worst = 0.0f64;
                 for (i, j) in (0..90).flat_map(|i| (0..50).map(move |j| (i, j))) {
                     let at = frame.position(f64::from(i), f64::from(j));
-                    let old = modes.counts().iter().enumerate().flat_map(|(n, &c)| (0..c as usize).map(move |m| (n, m)));
+                    let old =
+                        modes.counts().iter().enumerate().flat_map(|(n, &c)| (0..c as usize).map(move |m| (n, m)));
                     let new = (0..columns).flat_map(|n| (0..rows).map(move |m| (n, m)));
                     let wanted = sum(old, &kept, at, from);
                     worst = worst.max((sum(new, &folded.terms, at, into) - wanted).abs());
@@ -254,7 +256,8 @@ mod tests {
             assert!(plan.predicted.total() <= tolerance);
             let series = plan.series().unwrap();
             let kept: Vec<Mode> = series.modes.as_ref().unwrap().kept(&series.counts).collect();
-            let points: Vec<DVec2> = (0..40).map(|k| frame.position(f64::from(k * 37 % 96), f64::from(k * 23 % 54))).collect();
+            let points: Vec<DVec2> =
+                (0..40).map(|k| frame.position(f64::from(k * 37 % 96), f64::from(k * 23 % 54))).collect();
             for (at, truth) in points.iter().zip(images.at(&points)) {
                 let places = series.counts.iter().enumerate().flat_map(|(n, &c)| (0..c as usize).map(move |m| (n, m)));
                 let error = (sum(places, &kept, *at, series.period) - truth[1] / plan.scale[1]).abs();

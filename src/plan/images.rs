@@ -23,7 +23,7 @@ use super::terms::{self, Group};
 use super::weigh::{Weighed, peak_weight};
 use crate::Error;
 use crate::problem::{Image, Images};
-use crate::raster::{Reduction, aliasing, spline};
+use crate::raster::{Reduction, aliasing, spline, transform};
 use crate::series::{Bell, Modes as Bells};
 
 /// Images that one task goes through, at most, and tasks at least, where there are as many images. Tasks are joined in their order,
@@ -79,6 +79,7 @@ pub(super) fn reduce(groups: &mut [Group], images: &Images, period: DVec2, budge
     let ways: Vec<Reduction> = [false, true]
         .into_iter()
         .flat_map(|doubles| (1..=raster.levels()).rev().map(move |level| raster.reduction(level, doubles)))
+        .flat_map(|reduction| [reduction, reduction.by_transform()])
         .chain([raster.reduction(0, true)])
         .collect();
     let mut choices: Vec<Choice> = groups
@@ -115,7 +116,11 @@ impl<'a> Choice<'a> {
             let theta = TAU * along * way.pitch() * images.raster().frame().pixel_sides() / period;
             let error = group.weight * off_by(&held, theta, *way);
             // Moments in doubles take as long as those of many images do.
-            let cost = cost(group, *way) + if way.doubles { DOUBLED * images.raster().pixels() as f64 } else { 0.0 };
+            // A transform serves all images.
+            let points = way.points.map(|points| points as usize);
+            let transform = if way.transformed { transform::work(points) / images.all().len() as f64 } else { 0.0 };
+            let doubled = if way.doubles { DOUBLED * images.raster().pixels() as f64 } else { 0.0 };
+            let cost = cost(group, *way) + transform * group.members.len() as f64 + doubled;
             left.retain(|(_, other, dear)| *other > error || *dear < cost);
             if left.iter().all(|(_, other, _)| *other > error) {
                 left.push((*way, error, cost));
@@ -158,7 +163,10 @@ fn off_by(held: &[Vec<f64>; 2], theta: DVec2, reduction: Reduction) -> f64 {
     // Moments are rounded as they come, and the waves multiply that by no more than the corrections.
     let rounding = (reduction.rounding() + DOUBLES) * gain(0) * gain(1) * all;
     // (1 + ε)(1 + ε') − 1
-    along(0) * (1.0 + aliasing(highest(1))) + along(1) + rounding
+    // What a transform is off, each wave is, times what the correction is; those of both axes together.
+    let [across, down] = reduction.off();
+    let transform = (across + down + across * down) * gain(0) * gain(1) * all;
+    along(0) * (1.0 + aliasing(highest(1))) + along(1) + rounding + transform
 }
 
 /// Why there is no series of all images: by the sharpest of their bells.
@@ -187,6 +195,9 @@ pub(super) fn too_many(groups: &[Group]) -> Error {
 pub(super) fn cost(group: &Group, reduction: Reduction) -> f64 {
     let [columns, rows] = reduction.points.map(f64::from);
     let [n, m] = group.degree.map(|degree| f64::from(degree + 1));
+    if reduction.transformed {
+        return group.members.len() as f64 * transform::work_of_waves([n, m]);
+    }
     // Half of the points for each of cosines and sines; all pixels where they are taken as they are.
     let all = if reduction.level == 0 { 2.0 } else { 1.0 };
     PRODUCT * group.members.len() as f64 * 3.0 * rows * n * all * (columns + all * m)
@@ -245,7 +256,8 @@ fn add(
     };
     let raster = images.raster();
     let first = TAU * image.along / period;
-    let waves = raster.waves(reduction, first, degree.map(|degree| degree as usize + 1));
+    let wanted = image.ghost.radiance.map(|radiance| radiance != 0.0);
+    let waves = raster.waves(reduction, first, degree.map(|degree| degree as usize + 1), wanted);
     // Where the ghosts of the waves' middle are.
     let middle = images.axis() + image.along * (raster.middle(reduction) - images.axis());
     let spacing = if reduction.level == 0 { DVec2::ZERO } else { reduction.pitch() * raster.frame().pixel_sides() };

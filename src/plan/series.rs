@@ -105,7 +105,8 @@ impl Wide {
         let mut periodisation = period::error(&main.reaches, main.period);
         let (mut beyond, mut folded, mut others) = (0.0, Vec::new(), Vec::new());
         for (band, counts) in bands.iter_mut().zip(&kept) {
-            gathering += images::reduce(&mut band.groups, images, band.period, part * share::IMAGES * request.tolerance);
+            gathering +=
+                images::reduce(&mut band.groups, images, band.period, part * share::IMAGES * request.tolerance);
             if !amplitudes::worth_looking(&band.groups, counts, band.period, true) {
                 return None;
             }

@@ -21,7 +21,10 @@ const COARSE: f64 = 0.03;
 /// What the unit may be below the field's largest value, at those places that are looked at, by what is not known of it.
 const CLOSE: f64 = 0.2;
 
-/// The first guess is too high by as much as light is scattered; each next is off by what the last could tell.
+/// How much brighter than light that is spread evenly a field is at its largest, as a first guess.
+const LIKELY: f64 = 3.0;
+
+/// The first guess may be off by much; each next is off by what the last could tell.
 const GUESSES: usize = 12;
 
 /// Places along the longer side of the picture.
@@ -41,6 +44,10 @@ pub(super) fn weighed(problem: &Problem, images: &Images, request: &Request) -> 
     });
     if let Some(infinite) = scale.into_iter().find(|scale| !scale.is_finite()) {
         return Err(Error::Plan(format!("the ghosts of all pixels would reach {infinite:e}")));
+    }
+    if problem.ghosts().is_empty() {
+        let spread = evenly(images);
+        scale = [0, 1, 2].map(|colour| scale[colour].min(LIKELY * spread[colour]));
     }
     let largest = scale.into_iter().fold(0.0, f64::max);
     // A colour of which there is nothing is held against the others.
@@ -67,6 +74,15 @@ pub(super) fn weighed(problem: &Problem, images: &Images, request: &Request) -> 
     }
     let peaks = std::mem::take(&mut weighed.peaks);
     Ok(Weighed { peaks, ..in_units(problem, images, request, scale) })
+}
+
+/// What the images would come to if the light of each were spread evenly over all that it reaches.
+fn evenly(images: &Images) -> Rgb {
+    images.all().iter().fold([0.0; 3], |sum, image| {
+        let (flux, [low, high]) = (images.gathered(image).flux(), images.centres(image));
+        let area = (high - low + 2.0 * image.ghost.size).element_product();
+        [0, 1, 2].map(|colour| sum[colour] + flux[colour].abs() / area)
+    })
 }
 
 /// The weights in a given unit.

@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec2;
 use ndarray::Array2;
 
+use super::transform::{self, Spectrum};
 use crate::frame::Frame;
 use crate::veil::sweep::{self, Pyramid};
 use crate::veil::{Plane, Real};
@@ -24,9 +25,21 @@ pub struct Reduction {
     pub doubles: bool,
     /// Points along x and y.
     pub points: [u32; 2],
+    /// Whether waves come from one transform of all moments, and not from the moments themselves.
+    pub transformed: bool,
 }
 
 impl Reduction {
+    /// The same by a transform.
+    pub(crate) fn by_transform(self) -> Self {
+        Self { transformed: true, ..self }
+    }
+
+    /// By how much a transform is off along x and y, over all light; 0 without one.
+    pub(crate) fn off(&self) -> [f64; 2] {
+        self.points.map(|points| if self.transformed { transform::error(points as usize) } else { 0.0 })
+    }
+
     /// The pitch, in pixels.
     pub fn pitch(&self) -> f64 {
         f64::from(self.level).exp2()
@@ -63,6 +76,19 @@ pub(super) enum Moments {
 }
 
 impl Moments {
+    /// The transform of those of a level.
+    pub fn spectrum(&self, level: u32) -> Spectrum {
+        fn of<T: Real + Into<f64>>(planes: &[Vec<Plane<T>>; 3], level: u32) -> Spectrum {
+            let planes = planes.each_ref().map(|planes| &planes[level as usize - 1]);
+            let points = [planes[0].width(), planes[0].height()];
+            Spectrum::new(points, |channel, x, y| planes[channel].row(y)[x].into())
+        }
+        match self {
+            Self::Single(planes) => of(planes, level),
+            Self::Double(planes) => of(planes, level),
+        }
+    }
+
     pub fn new(photo: [&Plane<f32>; 3], lattices: usize, doubles: bool) -> Self {
         if doubles {
             return Self::Double(photo.map(|plane| Pyramid::moments_of(&plane.map(f64::from), lattices)));
@@ -118,9 +144,7 @@ impl Lattice {
                 }
             })
         });
-        // The first point lies one before the first pixel.
-        let pixel = |first: i32, point: f64| f64::from(first) + f64::from(level).exp2() * (point - 1.0);
-        let at = |column: f64, row: f64| frame.position(pixel(frame.window.x, column), pixel(frame.window.y, row));
+        let at = |column: f64, row: f64| position(frame, level, [column, row]);
         let middle = at(across.middle, down.middle);
         let from_middle = [
             (0..across.half).map(|k| at(across.last(k), 0.0).x - middle.x).collect(),
@@ -133,6 +157,13 @@ impl Lattice {
     pub fn half_rows(&self) -> usize {
         self.places.from_middle[1].len()
     }
+}
+
+/// Where a point of a lattice lies.
+pub(super) fn position(frame: Frame, level: u32, [column, row]: [f64; 2]) -> DVec2 {
+    // The first point lies one before the first pixel.
+    let pixel = |first: i32, point: f64| f64::from(first) + f64::from(level).exp2() * (point - 1.0);
+    frame.position(pixel(frame.window.x, column), pixel(frame.window.y, row))
 }
 
 /// So many points along an axis, folded about their middle.

@@ -12,6 +12,7 @@
 //! the pixels, but for that.
 
 mod lattice;
+pub(crate) mod transform;
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -30,6 +31,7 @@ use crate::{Error, Result};
 pub use lattice::Reduction;
 use lattice::{Lattice, Places};
 pub(crate) use lattice::{aliasing, spline};
+use transform::Spectrum;
 
 /// Rows of pixels that are taken at a time.
 const ROWS: usize = 64;
@@ -45,6 +47,8 @@ pub struct Raster {
     /// By reductions.
     lattices: [OnceLock<Lattice>; 2 * lattice::MOST],
     moments: [OnceLock<lattice::Moments>; 2],
+    /// By reductions, as the lattices.
+    spectra: [OnceLock<Spectrum>; 2 * lattice::MOST],
 }
 
 impl Raster {
@@ -65,6 +69,7 @@ impl Raster {
             flux: [0.0; 3],
             lattices: [const { OnceLock::new() }; 2 * lattice::MOST],
             moments: [const { OnceLock::new() }; 2],
+            spectra: [const { OnceLock::new() }; 2 * lattice::MOST],
         };
         raster.flux = [0, 1, 2].map(|channel| {
             let row = |y: usize| -> f64 {
@@ -129,8 +134,26 @@ impl Raster {
     }
 
     /// Σ L Ω over cos cos, sin cos, cos sin and sin sin of q·(x − middle), for each colour, over the points of a reduction or over the
-    /// pixels: as rows and columns so many harmonics of x and of y, from none on, of the first along either axis.
-    pub(crate) fn waves(&self, reduction: Reduction, first: DVec2, harmonics: [usize; 2]) -> [[Array2<f64>; 4]; 3] {
+    /// pixels: as rows and columns so many harmonics of x and of y, from none on, of the first along either axis. Of colours that are
+    /// not wanted there may be nothing.
+    pub(crate) fn waves(
+        &self,
+        reduction: Reduction,
+        first: DVec2,
+        harmonics: [usize; 2],
+        wanted: [bool; 3],
+    ) -> [[Array2<f64>; 4]; 3] {
+        if let Some(spectrum) = self.spectrum(reduction) {
+            let turned = first * reduction.pitch() * self.frame.pixel_sides() * DVec2::new(1.0, -1.0);
+            return [0, 1, 2].map(|channel| {
+                if !wanted[channel] {
+                    return [0; 4].map(|_| Array2::zeros((harmonics[0], harmonics[1])));
+                }
+                let mut waves = spectrum.waves(channel, turned.to_array(), harmonics);
+                waves.iter_mut().for_each(|waves| *waves *= self.factors[channel]);
+                waves
+            });
+        }
         let Some(lattice) = self.lattice(reduction) else { return self.waves_of_pixels(first, harmonics) };
         let [across, down] = [0, 1].map(|axis| tables(&lattice.places.from_middle[axis], first[axis], harmonics[axis]));
         let rows = lattice.half_rows();
@@ -161,25 +184,39 @@ impl Raster {
 
     /// The middle of what a reduction has, from which its waves are counted.
     pub(crate) fn middle(&self, reduction: Reduction) -> DVec2 {
+        if reduction.transformed {
+            let middle = reduction.points.map(|points| transform::middle(points as usize) as f64);
+            return lattice::position(self.frame, reduction.level, middle);
+        }
         self.lattice(reduction).map_or_else(|| self.places().middle, |lattice| lattice.places.middle)
     }
 
     /// Has the moments of a reduction ready. What makes them is parallel itself, so that tasks must not be the first to ask.
     pub(crate) fn prepare(&self, reduction: Reduction) {
-        self.lattice(reduction);
+        if self.spectrum(reduction).is_none() {
+            self.lattice(reduction);
+        }
+    }
+
+    /// The transform of the moments of a reduction, computed once; none of what is not transformed.
+    fn spectrum(&self, reduction: Reduction) -> Option<&Spectrum> {
+        let Reduction { level, doubles, transformed, .. } = reduction;
+        let place = (2 * level as usize + usize::from(doubles)).checked_sub(2).filter(|_| transformed)?;
+        Some(self.spectra[place].get_or_init(|| self.moments(doubles).spectrum(level)))
+    }
+
+    fn moments(&self, doubles: bool) -> &lattice::Moments {
+        self.moments[usize::from(doubles)].get_or_init(|| {
+            let planes = self.channels.each_ref().map(|channel| &channel.plane);
+            lattice::Moments::new(planes, self.levels() as usize, doubles)
+        })
     }
 
     /// The moments of a reduction, computed once; none of what is not reduced.
     fn lattice(&self, reduction: Reduction) -> Option<&Lattice> {
         let Reduction { level, doubles, .. } = reduction;
         let place = (2 * level as usize + usize::from(doubles)).checked_sub(2)?;
-        Some(self.lattices[place].get_or_init(|| {
-            let moments = self.moments[usize::from(doubles)].get_or_init(|| {
-                let planes = self.channels.each_ref().map(|channel| &channel.plane);
-                lattice::Moments::new(planes, self.levels() as usize, doubles)
-            });
-            moments.lattice(level, self.frame)
-        }))
+        Some(self.lattices[place].get_or_init(|| self.moments(doubles).lattice(level, self.frame)))
     }
 
     /// Where the pixels lie.
@@ -194,7 +231,7 @@ impl Raster {
     /// To a lattice of a level from 1 to [`Raster::levels`], or to none.
     pub(crate) fn reduction(&self, level: u32, doubles: bool) -> Reduction {
         let level = level.min(self.levels());
-        Reduction { level, doubles, points: lattice::points(self.frame, level) }
+        Reduction { level, doubles, points: lattice::points(self.frame, level), transformed: false }
     }
 
     /// How many lattices there are.

@@ -35,7 +35,7 @@ fn from_raster(raster: &Raster, reduction: Reduction, q: DVec2) -> [[f64; 2]; 3]
     let theta = q * reduction.pitch() * raster.frame().pixel_sides();
     let correction = if reduction.level == 0 { 1.0 } else { spline(theta.x) * spline(theta.y) };
     // The first harmonic.
-    let waves = raster.waves(reduction, q, [2, 2]);
+    let waves = raster.waves(reduction, q, [2, 2], [true; 3]);
     let (sin, cos) = q.dot(raster.middle(reduction)).sin_cos();
     waves.map(|waves| {
         let [cc, sc, cs, ss] = waves.map(|wave| wave[(1, 1)] / correction);
@@ -58,19 +58,24 @@ fn moments_have_the_waves_of_the_pixels_within_the_bound() {
         let raster = Raster::new(&pixels, frame).unwrap();
         for level in 0..=raster.levels() {
             for doubles in [false, true] {
-                let reduction = raster.reduction(level, doubles);
-                // Of radians a point: from none to what a lattice hardly resolves.
-                for _ in 0..12 {
-                    let theta = DVec2::new(chance.between(-2.5, 2.5), chance.between(-2.5, 2.5));
-                    let q = theta / (reduction.pitch() * frame.pixel_sides());
-                    let (truth, sums) = (waves(&pixels, frame, q), from_raster(&raster, reduction, q));
-                    let [x, y] = if level == 0 { [0.0; 2] } else { [aliasing(theta.x), aliasing(theta.y)] };
-                    let gain = (spline(theta.x) * spline(theta.y)).recip();
-                    let bound = x + y + x * y + gain * (reduction.rounding() + 1e-12);
-                    for colour in 0..3 {
-                        let off = (0..2).map(|part| (sums[colour][part] - truth[colour][part]).powi(2)).sum::<f64>();
-                        let off = off.sqrt() / raster.flux()[colour];
-                        assert!(off <= bound, "{window:?}, {reduction:?}, {theta}: {off:e} for {bound:e}");
+                for transformed in [false, true].into_iter().take(if level == 0 { 1 } else { 2 }) {
+                    let reduction = raster.reduction(level, doubles);
+                    let reduction = if transformed { reduction.by_transform() } else { reduction };
+                    // Of radians a point: from none to what a lattice hardly resolves.
+                    for _ in 0..12 {
+                        let theta = DVec2::new(chance.between(-2.5, 2.5), chance.between(-2.5, 2.5));
+                        let q = theta / (reduction.pitch() * frame.pixel_sides());
+                        let (truth, sums) = (waves(&pixels, frame, q), from_raster(&raster, reduction, q));
+                        let [x, y] = if level == 0 { [0.0; 2] } else { [aliasing(theta.x), aliasing(theta.y)] };
+                        let gain = (spline(theta.x) * spline(theta.y)).recip();
+                        let [across, down] = reduction.off();
+                        let bound = x + y + x * y + gain * (reduction.rounding() + 1e-12 + 2.0 * (across + down));
+                        for colour in 0..3 {
+                            let off =
+                                (0..2).map(|part| (sums[colour][part] - truth[colour][part]).powi(2)).sum::<f64>();
+                            let off = off.sqrt() / raster.flux()[colour];
+                            assert!(off <= bound, "{window:?}, {reduction:?}, {theta}: {off:e} for {bound:e}");
+                        }
                     }
                 }
             }
@@ -99,4 +104,41 @@ fn what_is_no_light_has_no_flux() {
     let light = |column: usize| raster.along_row(0, column..column + 1, &[1.0]);
     assert_eq!((light(0), light(1)), ([4.0, 8.0, 0.0], [0.0, 4.0, 0.0]));
     assert!(Raster::new(&[[1.0; 4]], frame).is_err());
+}
+
+/// A transform has the waves of the moments that it is of: all harmonics, of either sign along either axis.
+#[test]
+fn a_transform_has_the_waves_of_its_moments() {
+    let mut chance = Chance::new(11);
+    let frame = Frame::full(130, 77);
+    let raster = Raster::new(&pixels(frame.window.pixels(), &mut chance), frame).unwrap();
+    for (level, sign) in [(1, DVec2::new(1.0, 1.0)), (2, DVec2::new(-1.0, 1.0)), (1, DVec2::new(-1.0, -1.0))] {
+        let reduction = raster.reduction(level, true);
+        let harmonics = [23, 17];
+        // The last is one that the lattice still resolves.
+        let first = sign * 0.85 * std::f64::consts::PI / 22.0 / (reduction.pitch() * frame.pixel_sides());
+        let [own, other] = [reduction, reduction.by_transform()].map(|way| {
+            let middle = raster.middle(way);
+            let waves = raster.waves(way, first, harmonics, [true, false, true]);
+            (middle, waves)
+        });
+        assert!(other.1[1].iter().all(|waves| waves.iter().all(|wave| *wave == 0.0)), "green is not wanted");
+        for colour in [0, 2] {
+            for (n, m) in (0..harmonics[0]).flat_map(|n| (0..harmonics[1]).map(move |m| (n, m))) {
+                let about_origin = |(middle, waves): &(DVec2, [[Array2<f64>; 4]; 3]), sign: f64| {
+                    let [cc, sc, cs, ss] = waves[colour].each_ref().map(|wave| wave[(n, m)]);
+                    let turned = first * DVec2::new(n as f64, sign * m as f64);
+                    let (sin, cos) = turned.dot(*middle).sin_cos();
+                    let (re, im) = (cc - sign * ss, -sc - sign * cs);
+                    [re * cos + im * sin, im * cos - re * sin]
+                };
+                for sign in [1.0, -1.0] {
+                    let (one, two) = (about_origin(&own, sign), about_origin(&other, sign));
+                    let off = (one[0] - two[0]).hypot(one[1] - two[1]) / raster.flux()[colour];
+                    let bound: f64 = reduction.by_transform().off().iter().sum::<f64>() + 1e-12;
+                    assert!(off <= bound, "{level} {sign} ({n}, {m}): {off:e} for {bound:e}");
+                }
+            }
+        }
+    }
 }

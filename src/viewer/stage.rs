@@ -196,7 +196,8 @@ impl Stage {
         if work >= Work::Ghosts {
             let images = look.images(|| self.made.raster(document, &recovered, look, &whole));
             let recovery = recovered.told.clone();
-            self.made.scene = Some(Gathered { images, recovery, ..look.gather_from(Some(document.found.clone()), &whole) });
+            self.made.scene =
+                Some(Gathered { images, recovery, ..look.gather_from(Some(document.found.clone()), &whole) });
         }
         let Some(scene) = &self.made.scene else { return Ok(()) };
         let (bright, by) = (&mut self.made.bright, look.find.by);

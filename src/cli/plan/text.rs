@@ -122,8 +122,9 @@ fn groups(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
             Transform::Photo(Reduction { level: 0, .. }) => {
                 writeln!(out, ", degree {n} x {m}, from the photo's pixels")?
             }
-            Transform::Photo(Reduction { points: [x, y], .. }) => {
-                writeln!(out, ", degree {n} x {m}, from the photo's moments on {x} x {y} points")?;
+            Transform::Photo(Reduction { points: [x, y], transformed, .. }) => {
+                let what = if transformed { "the transform of the photo's moments" } else { "the photo's moments" };
+                writeln!(out, ", degree {n} x {m}, from {what} on {x} x {y} points")?;
             }
             Transform::Gather(Gathering { cells: Cells { counts: [x, y], orders: [p, q] }, sizes }) => {
                 write!(out, ", degree {n} x {m}, gathered in {x} x {y} cells of {p} x {q} moments")?;

@@ -114,7 +114,9 @@ impl OpticsSection {
         }
         if let Some(blades) = self.blades {
             if blades != 0 && !(3..=16).contains(&blades) {
-                return Err(Error::Usage(format!("an iris has from 3 to 16 blades, or 0 where it is round, and not {blades}")));
+                return Err(Error::Usage(format!(
+                    "an iris has from 3 to 16 blades, or 0 where it is round, and not {blades}"
+                )));
             }
             lens.iris.blades = (blades != 0).then_some(blades);
         }
@@ -123,12 +125,7 @@ impl OpticsSection {
 
     /// How it is set.
     pub fn setup(&self) -> Setup {
-        Setup {
-            fstop: self.fstop,
-            focus: self.focus,
-            sensor: self.sensor.unwrap_or(SENSOR),
-            ..Setup::default()
-        }
+        Setup { fstop: self.fstop, focus: self.focus, sensor: self.sensor.unwrap_or(SENSOR), ..Setup::default() }
     }
 }
 
@@ -144,7 +141,9 @@ impl Optical {
         let ghosts = system.ghosts(&GhostOptions::default())?;
         let name = match (&section.lens, &section.file) {
             (Some(name), _) => name.clone(),
-            (None, file) => file.as_deref().and_then(Path::file_stem).unwrap_or_default().to_string_lossy().into_owned(),
+            (None, file) => {
+                file.as_deref().and_then(Path::file_stem).unwrap_or_default().to_string_lossy().into_owned()
+            }
         };
         let made = Made {
             opening: rows::Opening::new(&prescription.iris, system.first_order(), setup.wavelength),

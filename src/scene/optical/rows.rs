@@ -85,18 +85,17 @@ fn of_ghost(ghost: &GhostPath, opening: &Opening, unit: f64) -> Vec<LensGhost> {
         })
     };
     let total: f64 = ghost.share.iter().sum();
-    let mean = |values: [f64; 3]| -> f64 {
-        values.iter().zip(ghost.share).map(|(value, share)| value * share / total).sum()
-    };
+    let mean =
+        |values: [f64; 3]| -> f64 { values.iter().zip(ghost.share).map(|(value, share)| value * share / total).sum() };
     let (magnification, radius) = (mean(ghost.magnification), mean(ghost.radius_mm));
     if !(total > 0.0) {
         return Vec::new();
     }
     let shines = |c: &usize| ghost.share[*c] > 0.0;
     let spread = |values: [f64; 3]| {
-        let (low, high) = (0..3).filter(shines).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), c| {
-            (low.min(values[c]), high.max(values[c]))
-        });
+        let (low, high) = (0..3)
+            .filter(shines)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), c| (low.min(values[c]), high.max(values[c])));
         high - low
     };
     // As far as it matters for a light at the middle of an edge of the picture.

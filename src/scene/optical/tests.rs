@@ -15,11 +15,8 @@ fn shares(rows: &[LensGhost]) -> [f64; 3] {
 fn rows_carry_the_light_of_all_pairs_whatever_the_picture() {
     for name in ["double-gauss", "tessar", "telephoto"] {
         let optical = Optical::new(lens(name)).unwrap();
-        let wanted = optical
-            .ghosts()
-            .ghosts
-            .iter()
-            .fold([0.0; 3], |sum, ghost| [0, 1, 2].map(|c| sum[c] + ghost.share[c]));
+        let wanted =
+            optical.ghosts().ghosts.iter().fold([0.0; 3], |sum, ghost| [0, 1, 2].map(|c| sum[c] + ghost.share[c]));
         for frame in [Frame::full(1920, 1080), Frame::full(100, 400), Frame::full(1920, 1080).in_units_of(0.3)] {
             for (share, wanted) in shares(&optical.fitted(&frame).lens().ghosts).into_iter().zip(wanted) {
                 assert!((share - wanted).abs() <= 1e-9 * wanted, "{name}: {share} {wanted}");
@@ -32,9 +29,7 @@ fn rows_carry_the_light_of_all_pairs_whatever_the_picture() {
 #[test]
 fn the_longer_side_of_a_sensor_is_that_of_the_picture() {
     let optical = Optical::new(lens("double-gauss")).unwrap();
-    let largest = |frame: Frame| {
-        optical.fitted(&frame).lens().ghosts.iter().map(|row| row.size.x).fold(0.0, f64::max)
-    };
+    let largest = |frame: Frame| optical.fitted(&frame).lens().ghosts.iter().map(|row| row.size.x).fold(0.0, f64::max);
     let wide = largest(Frame::full(1920, 1080));
     let radius = optical.ghosts().ghosts.iter().flat_map(|ghost| ghost.radius_mm).fold(0.0, f64::max);
     assert!((wide * 18.0 * 1080.0 / 1920.0 / radius - 1.0).abs() < 0.02, "{wide} {radius}");

@@ -77,7 +77,9 @@ impl Look {
         }
         match &mut self.lens {
             LookLens::Own(ghosts) => ghosts,
-            LookLens::Preset(_) | LookLens::File(..) | LookLens::Optical(_) => unreachable!("it is the look's own by now"),
+            LookLens::Preset(_) | LookLens::File(..) | LookLens::Optical(_) => {
+                unreachable!("it is the look's own by now")
+            }
         }
     }
 
