@@ -9,11 +9,13 @@ use crate::look::{Gathered, Look, Search};
 use crate::photo::{self, BadPixels, Facts, Photo};
 use crate::renderer::Settings;
 use crate::scene::{FindOptions, Recovered};
-use crate::{Result, limits};
+use crate::{Result, limits, plan as planner};
 
 /// What planning the ghosts of all pixels takes, and what each pixel adds to that, in bytes.
 const SOURCES: u64 = 160 << 20;
 const SOURCE: u64 = 32;
+/// And what the transform of all pixels adds, which many ghosts share.
+const TRANSFORMED: u64 = 96;
 
 /// A photo in which it is known what glares.
 pub struct Found<'a> {
@@ -64,7 +66,8 @@ impl<'a> Found<'a> {
         let recovered = stages.time("recover", recovered);
         if look.strength != 0.0 && look.takes_photo() {
             // Their light, its moments, and the waves that a plan looks at.
-            limits::room(SOURCES + SOURCE * photo.pixels.len() as u64, "planning the ghosts of all pixels")?;
+            let source = SOURCE + if look.lens_ghosts().len() >= planner::MANY_IMAGES { TRANSFORMED } else { 0 };
+            limits::room(SOURCES + source * photo.pixels.len() as u64, "planning the ghosts of all pixels")?;
         }
         let scene = stages.time("lights", || look.gather_knowing(&photo, &recovered, &frame, search));
         let mut warnings = photo.source.notes.clone();

@@ -23,13 +23,17 @@ use super::terms::{self, Group};
 use super::weigh::{Weighed, peak_weight};
 use crate::Error;
 use crate::problem::{Image, Images};
-use crate::raster::{Reduction, aliasing, spline, transform};
+use crate::raster::{Reduction, aliasing, spline};
+use crate::series::frequencies;
 use crate::series::{Bell, Modes as Bells};
 
 /// Images that one task goes through, at most, and tasks at least, where there are as many images. Tasks are joined in their order,
 /// whatever the number of cores.
 const CHUNK: usize = 8;
 const TASKS: usize = 16;
+
+/// Images from which on they may share a transform of all pixels, which takes much memory.
+pub(crate) const MANY_IMAGES: usize = 8;
 
 /// What f64 loses of a sum over a lattice, over the sum of its terms' magnitudes: some thousands of roundings.
 const DOUBLES: f64 = 1e-12;
@@ -80,6 +84,7 @@ pub(super) fn reduce(groups: &mut [Group], images: &Images, period: DVec2, budge
         .into_iter()
         .flat_map(|doubles| (1..=raster.levels()).rev().map(move |level| raster.reduction(level, doubles)))
         .flat_map(|reduction| [reduction, reduction.by_transform()])
+        .chain((images.all().len() >= MANY_IMAGES).then(|| raster.reduction(0, true).by_transform()))
         .chain([raster.reduction(0, true)])
         .collect();
     let mut choices: Vec<Choice> = groups
@@ -118,7 +123,7 @@ impl<'a> Choice<'a> {
             // Moments in doubles take as long as those of many images do.
             // A transform serves all images.
             let points = way.points.map(|points| points as usize);
-            let transform = if way.transformed { transform::work(points) / images.all().len() as f64 } else { 0.0 };
+            let transform = if way.transformed { frequencies::work(points) / images.all().len() as f64 } else { 0.0 };
             let doubled = if way.doubles { DOUBLED * images.raster().pixels() as f64 } else { 0.0 };
             let cost = cost(group, *way) + transform * group.members.len() as f64 + doubled;
             left.retain(|(_, other, dear)| *other > error || *dear < cost);
@@ -149,10 +154,13 @@ fn off_by(held: &[Vec<f64>; 2], theta: DVec2, reduction: Reduction) -> f64 {
     // The correction of a wave that the lattice hardly resolves would be larger than the wave.
     const RESOLVED: f64 = 0.9 * std::f64::consts::PI;
     let all: f64 = held[0].iter().sum();
-    if reduction.level == 0 {
-        return DOUBLES * all;
-    }
     let highest = |axis: usize| theta[axis] * (held[axis].len() - 1) as f64;
+    let [across, down] = reduction.off();
+    let off = across + down + across * down;
+    if reduction.level == 0 {
+        let resolved = !reduction.transformed || highest(0).max(highest(1)) <= frequencies::FASTEST;
+        return if resolved { (DOUBLES + off) * all } else { f64::INFINITY };
+    }
     if highest(0).max(highest(1)) > RESOLVED {
         return f64::INFINITY;
     }
@@ -164,8 +172,7 @@ fn off_by(held: &[Vec<f64>; 2], theta: DVec2, reduction: Reduction) -> f64 {
     let rounding = (reduction.rounding() + DOUBLES) * gain(0) * gain(1) * all;
     // (1 + ε)(1 + ε') − 1
     // What a transform is off, each wave is, times what the correction is; those of both axes together.
-    let [across, down] = reduction.off();
-    let transform = (across + down + across * down) * gain(0) * gain(1) * all;
+    let transform = off * gain(0) * gain(1) * all;
     along(0) * (1.0 + aliasing(highest(1))) + along(1) + rounding + transform
 }
 
@@ -196,7 +203,7 @@ pub(super) fn cost(group: &Group, reduction: Reduction) -> f64 {
     let [columns, rows] = reduction.points.map(f64::from);
     let [n, m] = group.degree.map(|degree| f64::from(degree + 1));
     if reduction.transformed {
-        return group.members.len() as f64 * transform::work_of_waves([n, m]);
+        return group.members.len() as f64 * frequencies::work_of_waves([n, m]);
     }
     // Half of the points for each of cosines and sines; all pixels where they are taken as they are.
     let all = if reduction.level == 0 { 2.0 } else { 1.0 };

@@ -45,6 +45,7 @@ pub use cost::{Cost, CostModel, GRID_PASSES};
 pub use decided::Plan;
 pub use direct::Precision;
 pub use gather::{Gathering, Transform};
+pub(crate) use images::MANY_IMAGES;
 pub(crate) use lattice::DOUBLE_ORDER;
 pub use lattice::Lattice;
 pub use layer::{Layer, Series};

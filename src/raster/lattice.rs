@@ -5,8 +5,8 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec2;
 use ndarray::Array2;
 
-use super::transform::{self, Spectrum};
 use crate::frame::Frame;
+use crate::series::frequencies::{self, Spectrum};
 use crate::veil::sweep::{self, Pyramid};
 use crate::veil::{Plane, Real};
 
@@ -37,7 +37,7 @@ impl Reduction {
 
     /// By how much a transform is off along x and y, over all light; 0 without one.
     pub(crate) fn off(&self) -> [f64; 2] {
-        self.points.map(|points| if self.transformed { transform::error(points as usize) } else { 0.0 })
+        self.points.map(|points| if self.transformed { frequencies::error(points as usize) } else { 0.0 })
     }
 
     /// The pitch, in pixels.
@@ -81,7 +81,7 @@ impl Moments {
         fn of<T: Real + Into<f64>>(planes: &[Vec<Plane<T>>; 3], level: u32) -> Spectrum {
             let planes = planes.each_ref().map(|planes| &planes[level as usize - 1]);
             let points = [planes[0].width(), planes[0].height()];
-            Spectrum::new(points, |channel, x, y| planes[channel].row(y)[x].into())
+            Spectrum::new(3, points, PI, |channel, x, y| planes[channel].row(y)[x].into())
         }
         match self {
             Self::Single(planes) => of(planes, level),
@@ -161,8 +161,9 @@ impl Lattice {
 
 /// Where a point of a lattice lies.
 pub(super) fn position(frame: Frame, level: u32, [column, row]: [f64; 2]) -> DVec2 {
-    // The first point lies one before the first pixel.
-    let pixel = |first: i32, point: f64| f64::from(first) + f64::from(level).exp2() * (point - 1.0);
+    // The first point lies one before the first pixel, but where the points are the pixels.
+    let before = if level == 0 { 0.0 } else { 1.0 };
+    let pixel = |first: i32, point: f64| f64::from(first) + f64::from(level).exp2() * (point - before);
     frame.position(pixel(frame.window.x, column), pixel(frame.window.y, row))
 }
 

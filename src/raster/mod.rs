@@ -12,7 +12,6 @@
 //! the pixels, but for that.
 
 mod lattice;
-pub(crate) mod transform;
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -28,10 +27,10 @@ use crate::frame::Frame;
 use crate::veil::{Photo, Sources};
 use crate::{Error, Result};
 
+use crate::series::frequencies::{self, Spectrum};
 pub use lattice::Reduction;
 use lattice::{Lattice, Places};
 pub(crate) use lattice::{aliasing, spline};
-use transform::Spectrum;
 
 /// Rows of pixels that are taken at a time.
 const ROWS: usize = 64;
@@ -47,8 +46,8 @@ pub struct Raster {
     /// By reductions.
     lattices: [OnceLock<Lattice>; 2 * lattice::MOST],
     moments: [OnceLock<lattice::Moments>; 2],
-    /// By reductions, as the lattices.
-    spectra: [OnceLock<Spectrum>; 2 * lattice::MOST],
+    /// Of the pixels, then by reductions, as the lattices.
+    spectra: [OnceLock<Spectrum>; 2 * lattice::MOST + 1],
 }
 
 impl Raster {
@@ -69,7 +68,7 @@ impl Raster {
             flux: [0.0; 3],
             lattices: [const { OnceLock::new() }; 2 * lattice::MOST],
             moments: [const { OnceLock::new() }; 2],
-            spectra: [const { OnceLock::new() }; 2 * lattice::MOST],
+            spectra: [const { OnceLock::new() }; 2 * lattice::MOST + 1],
         };
         raster.flux = [0, 1, 2].map(|channel| {
             let row = |y: usize| -> f64 {
@@ -185,7 +184,7 @@ impl Raster {
     /// The middle of what a reduction has, from which its waves are counted.
     pub(crate) fn middle(&self, reduction: Reduction) -> DVec2 {
         if reduction.transformed {
-            let middle = reduction.points.map(|points| transform::middle(points as usize) as f64);
+            let middle = reduction.points.map(|points| frequencies::middle(points as usize) as f64);
             return lattice::position(self.frame, reduction.level, middle);
         }
         self.lattice(reduction).map_or_else(|| self.places().middle, |lattice| lattice.places.middle)
@@ -201,8 +200,16 @@ impl Raster {
     /// The transform of the moments of a reduction, computed once; none of what is not transformed.
     fn spectrum(&self, reduction: Reduction) -> Option<&Spectrum> {
         let Reduction { level, doubles, transformed, .. } = reduction;
-        let place = (2 * level as usize + usize::from(doubles)).checked_sub(2).filter(|_| transformed)?;
-        Some(self.spectra[place].get_or_init(|| self.moments(doubles).spectrum(level)))
+        if !transformed {
+            return None;
+        }
+        let place = (2 * level as usize + usize::from(doubles)).saturating_sub(1);
+        Some(self.spectra[place].get_or_init(|| match level {
+            0 => Spectrum::new(3, self.size(), frequencies::FASTEST, |channel, x, y| {
+                f64::from(self.channels[channel].plane.row(y)[x])
+            }),
+            _ => self.moments(doubles).spectrum(level),
+        }))
     }
 
     fn moments(&self, doubles: bool) -> &lattice::Moments {

@@ -13,8 +13,9 @@ use std::sync::{Arc, OnceLock};
 use glam::DVec2;
 use pulp::Arch;
 
-use super::bell::{Modes, Shape, each_row};
+use super::bell::{Modes, Shape};
 use super::disc::MOST_BLADES;
+use super::frequencies::Spectrum;
 use super::tails::copies;
 
 /// The softest edge, and the sharpest: of a sharper one a disc does as well, which ends.
@@ -41,6 +42,8 @@ struct Inner {
     /// The steepest place of all.
     steepest: f64,
     moments: OnceLock<Moments>,
+    /// The distance of its samples, and their transform.
+    spectrum: OnceLock<(f64, Spectrum)>,
 }
 
 /// ∫∫ of it, and the mean square distance from the centre along one axis.
@@ -107,8 +110,8 @@ impl Iris {
             // whose directions differ, less than this.
             _ => 0.3 * peak / edge,
         };
-        let moments = OnceLock::new();
-        Self(Arc::new(Inner { edge, blades, rotation, sides, apothem, peak, steepest, moments }))
+        let (moments, spectrum) = (OnceLock::new(), OnceLock::new());
+        Self(Arc::new(Inner { edge, blades, rotation, sides, apothem, peak, steepest, moments, spectrum }))
     }
 
     /// A round one and a polygon, for tests.
@@ -236,16 +239,20 @@ impl Shape for Iris {
         if self.is_round() { 1.0 } else { apothem / farthest }
     }
 
-    /// A side's exponential is one along x times one along y.
+    /// A step's exponential is one along x times one along y: a side's, and that of the radius squared.
     fn over(&self, xs: &[f64], ys: &[f64], size: DVec2, visit: &mut dyn FnMut(usize, &[f64])) {
         let Inner { edge, sides, apothem, peak, .. } = &*self.0;
-        if self.is_round() {
-            return each_row(self, xs, ys, size, visit);
-        }
         // Farther than this all steps are nothing, or there is nothing left of one; and no product is beyond what f64 holds.
-        let exponential = |exponent: f64| exponent.clamp(-300.0, 300.0).exp();
-        let across: Vec<Vec<f64>> =
-            sides.iter().map(|side| xs.iter().map(|x| exponential(side.x * x / size.x / edge)).collect()).collect();
+        let exponential = |exponent: f64| (exponent / edge).clamp(-300.0, 300.0).exp();
+        let round = |x: f64| exponential(0.5 * (x / size.x).powi(2));
+        let across: Vec<Vec<f64>> = match self.is_round() {
+            true => vec![xs.iter().copied().map(round).collect()],
+            false => sides.iter().map(|side| xs.iter().map(|x| exponential(side.x * x / size.x)).collect()).collect(),
+        };
+        let down = |step: usize, y: f64| match sides.get(step) {
+            Some(side) => exponential(side.y * y / size.y - apothem),
+            None => exponential(0.5 * ((y / size.y).powi(2) - 1.0)),
+        };
         let mut row = vec![0.0; xs.len()];
         for (index, y) in ys.iter().enumerate() {
             // By the widest vectors that the processor has.
@@ -253,8 +260,8 @@ impl Shape for Iris {
                 #[inline(always)]
                 || {
                     row.fill(1.0);
-                    for (side, across) in sides.iter().zip(&across) {
-                        let down = exponential((side.y * y / size.y - apothem) / edge);
+                    for (step, across) in across.iter().enumerate() {
+                        let down = down(step, *y);
                         row.iter_mut().zip(across).for_each(|(row, across)| *row *= 1.0 + across * down);
                     }
                     row.iter_mut().for_each(|row| *row = (peak / *row).min(1.0));

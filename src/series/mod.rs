@@ -19,6 +19,7 @@ mod cosine_squared;
 mod disc;
 mod distinct;
 pub mod fourier_bessel;
+pub(crate) mod frequencies;
 mod gaussian;
 mod iris;
 pub mod moments;

@@ -3,6 +3,9 @@
 //! A ghost of a distant light is its opening, out of focus: evenly bright, with the shape that the iris has and an edge that diffraction
 //! softens. Fresnel's fringes of an edge that is d from focus are √(λ d) wide on the sensor.
 
+use std::collections::HashMap;
+use std::sync::{Mutex, PoisonError};
+
 use glam::DVec2;
 
 use crate::optics::{FirstOrder, GhostPath, Iris as Blades, LensGhosts};
@@ -26,8 +29,16 @@ const APART: f64 = 1.0;
 /// A logistic step falls from 90 to 10 % within so many of the edges that its iris is given.
 const STEP: f64 = 4.4;
 
+/// The next of some edges, so that ghosts share them, and what is computed of each.
+fn stepped(edge: f64) -> f64 {
+    const STEP: f64 = 1.2;
+    let [sharpest, softest] = EDGES;
+    let steps = (edge / sharpest).log(STEP).ceil().max(0.0);
+    (sharpest * STEP.powf(steps)).min(softest)
+}
+
 /// What shapes the ghosts of a lens.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug)]
 pub(super) struct Opening {
     /// Straight sides; none where the iris is round, or open wider than its blades reach.
     blades: Option<u32>,
@@ -35,6 +46,14 @@ pub(super) struct Opening {
     rotation: f64,
     /// In mm.
     wavelength: f64,
+    /// By edge and rotation.
+    known: Mutex<HashMap<(u64, u64), Iris>>,
+}
+
+impl PartialEq for Opening {
+    fn eq(&self, other: &Self) -> bool {
+        (self.blades, self.rotation, self.wavelength) == (other.blades, other.rotation, other.wavelength)
+    }
 }
 
 impl Opening {
@@ -44,7 +63,7 @@ impl Opening {
         let engaged = lens.f_number > 1.12 * lens.widest_f_number;
         // Rounded blades make an opening that is all but a circle.
         let blades = iris.blades.filter(|_| engaged && iris.roundness < 0.5);
-        Self { blades, rotation: iris.rotation, wavelength: 1e-6 * wavelength }
+        Self { blades, rotation: iris.rotation, wavelength: 1e-6 * wavelength, known: Mutex::default() }
     }
 
     /// The bell of a ghost whose radius on the sensor is so many mm, upside down or not, and its size; lengths are in units of so many mm.
@@ -54,14 +73,22 @@ impl Opening {
             return (Bell::Gaussian, 0.5 * SMALLEST.max(size));
         }
         let fringe = focus.map_or(f64::INFINITY, |focus| (self.wavelength * focus.abs()).sqrt());
-        let edge = (fringe / radius / STEP).max(SHARPEST / size).clamp(EDGES[0], EDGES[1]);
+        let edge = stepped((fringe / radius / STEP).max(SHARPEST / size));
         let turned = if upside_down { 180.0 } else { 0.0 };
-        let iris = match self.blades {
-            Some(blades) => Iris::new(edge, blades, (self.rotation + turned).rem_euclid(360.0 / f64::from(blades))),
-            None => Iris::new(edge, 0, 0.0),
+        let (blades, rotation) = match self.blades {
+            Some(blades) => (blades, (self.rotation + turned).rem_euclid(360.0 / f64::from(blades))),
+            None => (0, 0.0),
         };
-        // Of what a lens may say, no iris is refused.
-        iris.map_or((Bell::Gaussian, 0.5 * size), |iris| (Bell::Iris(iris), size))
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        let iris = match known.get(&(edge.to_bits(), rotation.to_bits())) {
+            Some(iris) => iris.clone(),
+            None => match Iris::new(edge, blades, rotation) {
+                Ok(iris) => known.entry((edge.to_bits(), rotation.to_bits())).or_insert(iris).clone(),
+                // Of what a lens may say, no iris is refused.
+                Err(_) => return (Bell::Gaussian, 0.5 * size),
+            },
+        };
+        (Bell::Iris(iris), size)
     }
 }
 

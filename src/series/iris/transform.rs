@@ -11,7 +11,7 @@ use ndarray::Array2;
 
 use super::{Iris, NOTHING};
 use crate::series::bell::{Bounded, Plane, Shape as _};
-use crate::series::waves;
+use crate::series::frequencies::Spectrum;
 
 impl Iris {
     /// Values at points of a square lattice about the centre, row by row, and their distance: such that sums of them over waves no faster
@@ -26,6 +26,21 @@ impl Iris {
             values.row_mut(row).iter_mut().zip(of_row).for_each(|(value, of_row)| *value = *of_row);
         });
         (step, values)
+    }
+
+    /// Their transform at waves up to z = NOTHING / η, beyond which there is none, and their distance.
+    fn spectrum(&self) -> &(f64, Spectrum) {
+        self.0.spectrum.get_or_init(|| {
+            let (step, values) = self.samples(NOTHING / self.fall());
+            // The farther from the ends of a lattice, the closer is a transform: with so many zeros around to some 1e-14.
+            let zeros = values.nrows() / 5;
+            let place = |index: usize| index.checked_sub(zeros).filter(|index| *index < values.nrows());
+            let value = |_, column, row| {
+                let at = place(row).zip(place(column));
+                at.map_or(0.0, |at| values[at])
+            };
+            (step, Spectrum::new(1, [values.nrows() + 2 * zeros; 2], PI, value))
+        })
     }
 
     /// η at the poles.
@@ -61,27 +76,21 @@ impl Bounded for Iris {
 
 impl Plane for Iris {
     fn parts(&self, counts: &[u32], size: DVec2) -> Vec<[f64; 4]> {
-        let turn = TAU * size;
+        let (step, spectrum) = self.spectrum();
+        let first = TAU * size * *step;
+        // Of faster waves there is nothing.
+        let within = |first: f64, harmonics: usize| harmonics.min((PI / first) as usize + 1);
         let most = counts.iter().max().map_or(0, |&count| count as usize);
-        let fastest = turn * DVec2::new(counts.len() as f64, most as f64);
-        let (step, values) = self.samples(fastest.max_element());
-        let half = (values.nrows() / 2) as f64;
-        // A row for each point, a column for each harmonic.
-        let tables = |harmonics: usize, first: f64| {
-            let turns: Vec<f64> = (0..values.nrows()).map(|point| first * step * (point as f64 - half) / TAU).collect();
-            let waves = waves(&turns, &vec![1.0; harmonics]);
-            [0, 1].map(|part| {
-                Array2::from_shape_fn((values.nrows(), harmonics), |(point, n)| waves[n * values.nrows() + point][part])
-            })
-        };
-        let ([cos_x, sin_x], [cos_y, sin_y]) = (tables(counts.len(), turn.x), tables(most, turn.y));
-        // Rows of points first: a row of a sum for each of them, then one for each harmonic of y.
-        let [along_cos, along_sin] = [cos_x, sin_x].map(|wave| values.dot(&wave));
-        let down = |along: &Array2<f64>, wave: &Array2<f64>| wave.t().dot(along);
-        let parts =
-            [down(&along_cos, &cos_y), down(&along_sin, &sin_y), down(&along_cos, &sin_y), down(&along_sin, &cos_y)];
+        let harmonics = [within(first.x, counts.len()), within(first.y, most)];
+        let waves = spectrum.waves(0, first.to_array(), harmonics);
         let scale = step * step * size.element_product();
-        let modes = counts.iter().enumerate().flat_map(|(n, &count)| (0..count as usize).map(move |m| (m, n)));
-        modes.map(|at| parts.each_ref().map(|part| scale * part[at])).collect()
+        let modes = counts.iter().enumerate().flat_map(|(n, &count)| (0..count as usize).map(move |m| [n, m]));
+        // Cosines of both, sines of both, and those of one.
+        let [cc, sc, cs, ss] = &waves;
+        let part = |at: [usize; 2]| match at[0] < harmonics[0] && at[1] < harmonics[1] {
+            true => [cc, ss, cs, sc].map(|part| scale * part[at]),
+            false => [0.0; 4],
+        };
+        modes.map(part).collect()
     }
 }

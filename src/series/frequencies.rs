@@ -1,6 +1,6 @@
-//! Waves of any frequency from one transform of a lattice's moments.
+//! Waves of any frequency from one transform of what stands on a lattice.
 //!
-//! Two products of matrices for each image of a photo would take most of the time there is. But the moments μ_j have a transform at
+//! Two products of matrices for each image of a photo would take most of the time there is. But values μ_j have a transform at
 //! evenly spaced frequencies, and a B-spline β of order p carries from there to any other: with φ = 2πu_j/L, u_j the number of a point
 //! from the middle one and L that of frequencies, as many turns τ apart,
 //!
@@ -21,15 +21,18 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 /// Points that a B-spline reaches.
-const ORDER: usize = 18;
+const ORDER: usize = 20;
 
 /// So many frequencies, at least, for each point.
 const OVERSAMPLING: f64 = 2.2;
 
 type Wave = Complex<f64>;
 
+/// Of pixels themselves no waves are wanted that turn faster than this from one to the next, in radians.
+pub(crate) const FASTEST: f64 = 0.45 * PI;
+
 /// By how much a wave is off where it comes from a transform of so many points, over all light.
-pub(super) fn error(points: usize) -> f64 {
+pub(crate) fn error(points: usize) -> f64 {
     let ratio = points as f64 / (2.0 * length(points) as f64 - points as f64);
     // Two of them, and others that are smaller by far; and what doubles lose.
     2.1 * ratio.powi(ORDER as i32) + 1e-13
@@ -65,24 +68,32 @@ pub(crate) fn work_of_waves([n, m]: [f64; 2]) -> f64 {
     3.0 * PRODUCT * taps * 2.0 * (n * (FREQUENCIES * m + taps) + 2.0 * n * m)
 }
 
-/// The transform of moments.
-pub(super) struct Spectrum {
+/// The transform of values on a lattice, of one channel or several.
+#[derive(Debug)]
+pub(crate) struct Spectrum {
     /// Frequencies along x and y.
     length: [usize; 2],
-    /// From [`Spectrum::first`] frequencies of x on, a row of all frequencies of y for each: red, green and blue.
-    waves: [Vec<Wave>; 3],
+    /// Of each channel: for each frequency of x from none on a row of all frequencies of y.
+    waves: Vec<Vec<Wave>>,
 }
 
 impl Spectrum {
-    /// Of columns and rows of values, each a channel's by column and row; counted from the middle ones.
-    pub fn new(points: [usize; 2], value: impl Fn(usize, usize, usize) -> f64 + Sync) -> Self {
+    /// Of columns and rows of values, each a channel's by column and row; counted from the middle ones. Waves of x are to turn by no
+    /// more than `fastest` radians a point.
+    pub fn new(
+        channels: usize,
+        points: [usize; 2],
+        fastest: f64,
+        value: impl Fn(usize, usize, usize) -> f64 + Sync,
+    ) -> Self {
         let length = points.map(length);
+        let columns = ((fastest / TAU * length[0] as f64) as usize + ORDER).min(length[0] / 2) + 1;
         let gains = [0, 1].map(|axis| gains(points[axis], length[axis]));
         let channel = |channel: usize| {
             let along = along_rows(points, length[0], |x, y| value(channel, x, y) * gains[0][x] * gains[1][y]);
-            down_columns(&along, points[1], length)
+            down_columns(&along, points[1], [columns, length[1]])
         };
-        Self { length, waves: [0, 1, 2].map(channel) }
+        Self { length, waves: (0..channels).map(channel).collect() }
     }
 
     /// Sums over cos cos, sin cos, cos sin and sin sin of so many harmonics of the first waves, in radians a point, of either sign.
@@ -190,7 +201,7 @@ fn gains(points: usize, length: usize) -> Vec<f64> {
 }
 
 /// The point that is counted from.
-pub(super) fn middle(points: usize) -> usize {
+pub(crate) fn middle(points: usize) -> usize {
     points / 2
 }
 
@@ -212,15 +223,15 @@ fn along_rows([columns, rows]: [usize; 2], length: usize, value: impl Fn(usize, 
     all
 }
 
-/// The transforms of all columns, of which `rows` have something, one after the other.
-fn down_columns(along: &Array2<Wave>, rows: usize, length: [usize; 2]) -> Vec<Wave> {
-    let transform = FftPlanner::<f64>::new().plan_fft_forward(length[1]);
-    let mut all = vec![Wave::ZERO; along.ncols() * length[1]];
-    all.par_chunks_mut(length[1]).enumerate().for_each_init(
+/// The transforms of some columns, of which `rows` have something, one after the other.
+fn down_columns(along: &Array2<Wave>, rows: usize, [columns, length]: [usize; 2]) -> Vec<Wave> {
+    let transform = FftPlanner::<f64>::new().plan_fft_forward(length);
+    let mut all = vec![Wave::ZERO; columns * length];
+    all.par_chunks_mut(length).enumerate().for_each_init(
         || vec![Wave::ZERO; transform.get_inplace_scratch_len()],
         |scratch, (k, column)| {
             for y in 0..rows {
-                column[(y + length[1] - middle(rows)) % length[1]] = along[(y, k)];
+                column[(y + length - middle(rows)) % length] = along[(y, k)];
             }
             transform.process_with_scratch(column, scratch);
         },
