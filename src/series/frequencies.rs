@@ -29,7 +29,7 @@ const OVERSAMPLING: f64 = 2.2;
 type Wave = Complex<f64>;
 
 /// Of pixels themselves no waves are wanted that turn faster than this from one to the next, in radians.
-pub(crate) const FASTEST: f64 = 0.45 * PI;
+pub(crate) const FASTEST: f64 = 0.7 * PI;
 
 /// By how much a wave is off where it comes from a transform of so many points, over all light.
 pub(crate) fn error(points: usize) -> f64 {

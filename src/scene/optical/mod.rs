@@ -75,6 +75,8 @@ struct Made {
     veil: Option<LensVeil>,
     /// The name for people.
     name: String,
+    /// The f-number with the stop wide open.
+    widest: f64,
 }
 
 impl OpticsSection {
@@ -150,6 +152,7 @@ impl Optical {
             // A file says what reflects, and nothing of what scatters.
             veil: section.lens.is_some().then(|| veil(&prescription.coating)),
             prescription,
+            widest: system.first_order().widest_f_number,
             ghosts,
             name,
         };
@@ -180,6 +183,11 @@ impl Optical {
     /// The table of its ghosts, in the unit of the picture that it was fitted to.
     pub fn lens(&self) -> &Arc<Lens> {
         &self.lens
+    }
+
+    /// The f-number with the stop wide open.
+    pub fn widest(&self) -> f64 {
+        self.made.widest
     }
 
     /// Which lens it is, and how it is set.

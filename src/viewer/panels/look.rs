@@ -6,6 +6,7 @@ use super::{colour, lens, veil};
 use crate::choices::{LengthUnit, Mix, Normalize};
 use crate::look::Veil;
 use crate::scene::presets::{self, NO_LENS};
+use crate::scene::{Optical, OpticsSection, lenses};
 use crate::viewer::control::{Number, Tip, choice, item_of};
 use crate::viewer::document::Document;
 use crate::viewer::model::{Look, LookLens};
@@ -24,6 +25,14 @@ const SIZE: Number = Number {
     about: "What the size of every ghost is multiplied by; its light stays as much as it is.",
     unit: "times",
     range: 0.01..=100.0,
+    logarithmic: true,
+};
+
+const FSTOP: Number = Number {
+    name: "F-number",
+    about: "What the lens is stopped down to; the smaller its opening, the smaller its ghosts, and blades show.",
+    unit: "focal lengths over diameters",
+    range: 0.7..=32.0,
     logarithmic: true,
 };
 
@@ -74,6 +83,7 @@ pub fn show(ui: &mut Ui, document: &mut Document, _: &Stage) {
     let (look, opened) = (&mut document.look, &document.opened);
     STRENGTH.show(ui, &mut look.strength, opened.strength);
     preset(ui, look, opened);
+    stop(ui, look, opened);
     SIZE.show(ui, &mut look.size, opened.size);
     let about = "What all lengths are counted in: sizes, and positions from the picture's centre. Their numbers stay.";
     choice(ui, "Unit", about, &mut look.unit, &UNITS, opened.unit);
@@ -106,7 +116,25 @@ fn called(lens: &LookLens) -> String {
     }
 }
 
-/// The lenses that there are; one with a veil brings it along.
+/// How far a lens that is known by its surfaces is stopped down; no row where there is none.
+fn stop(ui: &mut Ui, look: &mut Look, opened: &Look) {
+    let LookLens::Optical(optical) = &look.lens else { return };
+    let set = |lens: &LookLens| match lens {
+        LookLens::Optical(optical) => optical.section().fstop,
+        _ => None,
+    };
+    let (mut fstop, widest) = (set(&look.lens), optical.widest());
+    FSTOP.optional(ui, &mut fstop, (widest, "as wide as the lens opens"), set(&opened.lens));
+    if fstop != set(&look.lens) {
+        let fstop = fstop.map(|fstop| fstop.max(widest));
+        // What cannot be set stays as it was.
+        if let Ok(set) = Optical::new(OpticsSection { fstop, ..optical.section().clone() }) {
+            look.lens = LookLens::Optical(set);
+        }
+    }
+}
+
+/// The lenses that there are, and real ones after them; one with a veil brings it along.
 fn preset(ui: &mut Ui, look: &mut Look, opened: &Look) {
     let presets = || presets::all().iter().map(|preset| preset.name).chain([NO_LENS]);
     let names: Vec<_> = presets().collect();
@@ -125,6 +153,19 @@ fn preset(ui: &mut Ui, look: &mut Look, opened: &Look) {
                     let adds = look.veil.as_ref().is_some_and(|veil| veil.adds);
                     // What cannot be had of a preset is nothing; the same test makes their veils.
                     *look = look.clone().through(LookLens::Preset(lens.into()), adds).unwrap_or_else(|_| look.clone());
+                }
+            }
+            ui.separator();
+            for lens in lenses::all() {
+                let name = lens.name;
+                let chosen =
+                    matches!(&look.lens, LookLens::Optical(now) if now.section().lens.as_deref() == Some(name));
+                let about = "A real lens, by the surfaces of its patent";
+                if item_of(ui, &format!("real {name}"), about, |ui| ui.selectable_label(chosen, name)) {
+                    let section = OpticsSection { lens: Some(name.to_owned()), ..OpticsSection::default() };
+                    let adds = look.veil.as_ref().is_some_and(|veil| veil.adds);
+                    let through = |optical| look.clone().through(LookLens::Optical(optical), adds);
+                    *look = Optical::new(section).and_then(through).unwrap_or_else(|_| look.clone());
                 }
             }
         })
