@@ -1,6 +1,6 @@
 //! A picture as a kernel, pixel by pixel.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use rayon::prelude::*;
 
@@ -12,8 +12,8 @@ use super::Fault;
 pub struct Kernel {
     rows: usize,
     columns: usize,
-    /// Row by row from the top, three channels each.
-    pixels: Vec<[f64; 3]>,
+    /// Row by row from the top, three channels each; millions, which copies share.
+    pixels: Arc<Vec<[f64; 3]>>,
     /// What each channel spreads, over these pixels and beyond.
     energies: [f64; 3],
     /// The mean over the channels and over all pixels whose distance from the centre rounds to the index, once it is asked for.
@@ -42,14 +42,14 @@ impl Kernel {
             return fault("it is black".into());
         }
         pixels.iter_mut().flatten().for_each(|x| *x /= energy);
-        Ok(Self { energies: sums(&pixels), rows, columns, pixels, rings: OnceLock::new() })
+        Ok(Self { energies: sums(&pixels), rows, columns, pixels: Arc::new(pixels), rings: OnceLock::new() })
     }
 
     /// One of as many pixels as there are, of which none is negative, as they are; of each channel so much more falls `beyond` them.
     pub(super) fn of_light(rows: usize, columns: usize, pixels: Vec<[f64; 3]>, beyond: [f64; 3]) -> Self {
         let within = sums(&pixels);
         let energies = [0, 1, 2].map(|channel| within[channel] + beyond[channel]);
-        Self { rows, columns, pixels, energies, rings: OnceLock::new() }
+        Self { rows, columns, pixels: Arc::new(pixels), energies, rings: OnceLock::new() }
     }
 
     /// How many rows.
@@ -65,6 +65,11 @@ impl Kernel {
     /// What each pixel takes, row by row from the top.
     pub fn pixels(&self) -> &[[f64; 3]] {
         &self.pixels
+    }
+
+    /// The same, to be kept by others.
+    pub(crate) fn shared(&self) -> Arc<Vec<[f64; 3]>> {
+        self.pixels.clone()
     }
 
     /// The row and the column of the centre.

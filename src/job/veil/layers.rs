@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::account::Loss;
 use super::planning::Held;
-use super::{Ledger, Seat, check, coarse, computed, enlarged, failed, ledger, light, raised, seated, terms};
+use super::{Ledger, Seat, check, coarse, computed, enlarged, failed, ledger, light, on_pixels, raised, seated, terms};
 use crate::Result;
 use crate::frame::Frame;
 use crate::look::{Look, Veil as Wanted};
@@ -82,7 +82,7 @@ impl VeilSums {
         let sources = veil::Photo::rgba(filled.as_flattened(), seat.size).map_err(failed)?;
         let mut all = VeilLayers { layers: Vec::new(), asked: self.held.asked, predicted: 0.0, terms: 0, raised: None };
         for part in &self.parts {
-            let part = &part.on(self.grid.as_ref());
+            let part = &on_pixels(part, self.grid.as_ref())?;
             let (channels, asked) = self.held.channels(part.psf(), seat.pixels(part.border))?;
             let veil::Veil { planes, certified, .. } = seat.cropped(computed(&channels, &sources)?);
             let loses = Loss::new(&part.clone().adding(false), seat, 1.0);

@@ -18,10 +18,10 @@ use crate::choices::Normalize;
 use crate::frame::Frame;
 use crate::look::{Look, Veil as Wanted};
 use crate::photo::{Photo, View};
-use crate::psf::{Fault, Name, Unit};
+use crate::psf::{Fault, Grid, Name, Unit};
 use crate::scene::{Emission, Recovered};
 use crate::veil::{self, Predicted};
-use crate::{Error, Result};
+use crate::{Error, Result, limits};
 
 pub use account::{Ledger, NoSources, VeilError, Veiled};
 use account::{Loss, ledger, no_sources};
@@ -65,7 +65,7 @@ fn prepared(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame, stages: 
     let (view, seat) = seated(look, wanted, photo, frame)?;
     let held = Held::new(look, wanted);
     stages.time("veil plan", || {
-        let wanted = wanted.on(wanted.grid(&enlarged(look, frame)).as_ref());
+        let wanted = on_pixels(wanted, wanted.grid(&enlarged(look, frame)).as_ref())?;
         let (channels, asked) = held.channels(wanted.psf(), seat.pixels(wanted.border))?;
         Ok(Prepared { wanted, view, seat, channels, asked })
     })
@@ -76,6 +76,18 @@ fn seated(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame) -> Result<
     let view = seen(look, wanted, photo)?.map(|view| view.resized(&photo.frame, frame));
     let seat = Seat::new(wanted, &enlarged(look, frame), view.as_ref())?;
     Ok((view, seat))
+}
+
+/// The veil on pixels that its function has to know.
+///
+/// # Errors
+/// Where the system has no room for a picture of it.
+fn on_pixels(wanted: &Wanted, grid: Option<&Grid>) -> Result<Wanted> {
+    if let Some(Grid { stored: [columns, rows], .. }) = grid {
+        let bytes = 4 * size_of::<[f64; 3]>() as u64 * *columns as u64 * *rows as u64;
+        limits::room(bytes, "the picture of the veil's function")?;
+    }
+    Ok(wanted.on(grid))
 }
 
 /// A look that is made larger is so by its veil, too, where that is on the picture's plane.

@@ -215,8 +215,7 @@ fn positive(psf: &Psf, range: [f64; 2], tolerance: f64, looser: f64) -> Result<O
 /// A picture as a kernel, so many times what it is.
 fn picture(kernel: &psf::Kernel, times: f64) -> Result<Picture> {
     let [row, column] = kernel.centre();
-    let picture = Picture::new([kernel.columns(), kernel.rows()], [column, row], kernel.pixels().to_vec());
-    // It may have millions of pixels.
+    let picture = Picture::new([kernel.columns(), kernel.rows()], [column, row], kernel.shared());
     let scaled = if times == 1.0 { picture } else { picture.and_then(|picture| picture.times(times)) };
     scaled.map_err(failed)
 }
