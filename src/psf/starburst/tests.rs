@@ -102,13 +102,15 @@ fn a_square_opening_makes_a_cross_as_it_is_turned() {
         let angle = f64::to_radians(rotation - 45.0);
         let along = |distance: f64| [distance * angle.cos(), distance * angle.sin()].map(|x| x.round() as isize);
         let on = [1.0, 4.0, 20.0, 150.0].map(along);
-        for [right, above] in on.into_iter().chain([[1, 1], [2, -1], [-3, 5], [20, 22]]) {
+        // Beside it there is next to nothing, and what fringes are left in that are not all told apart.
+        let beside = [[1, 1], [2, -1], [-3, 5], [20, 22]].map(|pixel| (pixel, 0.05));
+        for ([right, above], most) in on.map(|pixel| (pixel, 0.025)).into_iter().chain(beside) {
             let pattern = |x, y| square(x, y, angle);
             let known = mean(pattern, fstop, 36e3 / 1920.0, right as f64, above as f64);
             let found = at(&kernel, right, above);
             for k in 0..3 {
                 let off = (found[k] / known[k] - 1.0).abs();
-                assert!(off < 0.025, "f/{fstop}, {rotation}: {right}, {above}: {found:?} for {known:?}");
+                assert!(off < most, "f/{fstop}, {rotation}: {right}, {above}: {found:?} for {known:?}");
             }
         }
         // ∫ sinc² over half a pixel to either side, both ways; only where its sides are the pixel's.
