@@ -3,7 +3,7 @@
 use crate::choices::{Border, Projection};
 use crate::frame::Frame;
 use crate::photo::View;
-use crate::psf::{self, Basis, Parameters, Psf, Unit};
+use crate::psf::{self, Basis, Grid, Parameters, Psf, Unit};
 use crate::scene::{VeilFunction, VeilSection};
 use crate::veil::Geometry;
 
@@ -109,6 +109,24 @@ impl Veil {
         self.function.psf()
     }
 
+    /// The pixels that its function has to know, of a photo's frame with lengths in the look's unit; none where it is the same for all.
+    pub(crate) fn grid(&self, frame: &Frame) -> Option<Grid> {
+        let stored = [frame.window.width, frame.window.height].map(|side| side as usize);
+        self.psf().is_of_pixels().then(|| Grid { stored, across: frame.width as usize, pitch: frame.pixel_size() })
+    }
+
+    /// The same on these pixels: its function is then one of pixels, too.
+    #[must_use]
+    pub(crate) fn on(&self, grid: Option<&Grid>) -> Self {
+        let Some(grid) = grid else { return self.clone() };
+        Self { function: VeilFunction::from(self.psf().on(grid)), ..self.clone() }
+    }
+
+    /// The share of the light that it scatters on a photo's frame with lengths in the look's unit, RGB, where the strength is 1.
+    pub fn energies(&self, frame: &Frame) -> [f64; 3] {
+        self.grid(frame).map_or_else(|| self.psf().energies(), |grid| self.psf().energies_on(&grid))
+    }
+
     /// Whether the function's angles are degrees, so that it matters what the picture spans.
     pub fn is_in_degrees(&self) -> bool {
         self.psf().unit() == Unit::Degrees
@@ -118,7 +136,7 @@ impl Veil {
     pub fn projection(&self) -> Projection {
         let by_default = match self.psf().unit() {
             Unit::Degrees => Projection::Rectilinear,
-            Unit::Look | Unit::Pixels => Projection::Planar,
+            Unit::Look | Unit::Pixels | Unit::Micrometres => Projection::Planar,
         };
         self.projection.unwrap_or(by_default)
     }
@@ -149,8 +167,12 @@ impl Veil {
                 }
                 _ => fault("projection", format!("{name} is a function on the picture's plane, not in degrees")),
             },
-            Unit::Pixels if projection == Projection::Planar => Ok(Geometry::Planar { pitch: 1.0, solid_angle: 1.0 }),
-            Unit::Pixels => fault("projection", format!("{name} is a picture in the photo's plane, not in degrees")),
+            Unit::Pixels | Unit::Micrometres if projection == Projection::Planar => {
+                Ok(Geometry::Planar { pitch: 1.0, solid_angle: 1.0 })
+            }
+            Unit::Pixels | Unit::Micrometres => {
+                fault("projection", format!("{name} is a picture in the photo's plane, not in degrees"))
+            }
             Unit::Degrees => {
                 let Some(&View { focal, .. }) = view else {
                     return fault(

@@ -50,7 +50,28 @@ pub struct PsfArgs {
     #[arg(long, value_name = "FILE")]
     kernel: Option<PathBuf>,
 
-    /// The share of the light that is scattered, above 0 and at most 1 [default: the function's own]
+    /// Of starburst: the f-number, 0.5 to 64
+    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = finite)]
+    fstop: Option<f64>,
+
+    /// Of starburst: blades of the iris, 3 to 16, or 0 for a round one [default: 6]
+    #[arg(long, value_name = "COUNT")]
+    blades: Option<u32>,
+
+    /// Of starburst: degrees that the iris is turned by against the clock, from a corner on the right [default: 0]
+    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true, value_parser = finite)]
+    rotation: Option<f64>,
+
+    /// Of starburst: how far its blades are bent, from 0, straight, to 1, a circle [default: 0]
+    #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = finite)]
+    roundness: Option<f64>,
+
+    /// Of starburst: the width of the sensor, which the photo's width spans, in millimetres [default: 36]
+    #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = finite)]
+    sensor: Option<f64>,
+
+    /// The share of the light that is scattered, above 0 and at most 1 [default: the function's own]; of starburst, what the lens
+    /// scatters besides [default: 0]
     #[arg(long, value_name = "F", allow_hyphen_values = true, value_parser = finite)]
     scatter: Option<f64>,
 }
@@ -71,7 +92,8 @@ fn tail(text: &str) -> std::result::Result<Tail, String> {
 impl PsfArgs {
     /// What is given wins over what was said before.
     pub fn over(&self, before: Parameters) -> Parameters {
-        let Self { age, pigment, luminance, width, widths, weights, tints, abg, table, kernel, scatter } = self.clone();
+        let Self { age, pigment, luminance, width, widths, weights, tints, abg, table, kernel, .. } = self.clone();
+        let Self { fstop, blades, rotation, roundness, sensor, scatter, .. } = *self;
         let (tail, end) = abg.map_or((None, None), |Tail(tail, end)| (Some(tail), end));
         let file = |given: Option<PathBuf>, before| given.map(|path| absolute(&path)).or(before);
         Parameters {
@@ -89,15 +111,22 @@ impl PsfArgs {
             end: if abg.is_some() { end } else { before.end },
             table: file(table, before.table),
             kernel: file(kernel, before.kernel),
+            fstop: fstop.or(before.fstop),
+            blades: blades.or(before.blades),
+            rotation: rotation.or(before.rotation),
+            roundness: roundness.or(before.roundness),
+            sensor: sensor.or(before.sensor),
             scatter: scatter.or(before.scatter),
         }
     }
 
     /// Whether nothing is given.
     pub fn is_empty(&self) -> bool {
-        let Self { age, pigment, luminance, width, widths, weights, tints, abg, table, kernel, scatter } = self;
-        [age, pigment, width, scatter].iter().all(|number| number.is_none())
+        let Self { age, pigment, luminance, width, widths, weights, tints, abg, table, kernel, .. } = self;
+        let Self { fstop, blades, rotation, roundness, sensor, scatter, .. } = self;
+        [age, pigment, width, fstop, rotation, roundness, sensor, scatter].iter().all(|number| number.is_none())
             && luminance.is_none()
+            && blades.is_none()
             && [widths, weights].iter().all(|list| list.is_none())
             && tints.is_none()
             && abg.is_none()

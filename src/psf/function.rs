@@ -9,6 +9,7 @@ use super::kernel::Kernel;
 use super::parameters::Name;
 use super::parts::Part;
 use super::plane::{Abg, Camera, Term};
+use super::starburst::Starburst;
 use super::table::Table;
 
 /// What a radius or an angle is measured in.
@@ -20,6 +21,8 @@ pub enum Unit {
     Look,
     /// Pixels of the photo; values are per pixel.
     Pixels,
+    /// Micrometres on the sensor; values are per square of them.
+    Micrometres,
 }
 
 /// One of the functions.
@@ -36,7 +39,10 @@ pub(super) enum Function {
     Abg(Abg),
     Table(Table),
     Camera,
-    Kernel(Kernel),
+    /// A picture, and the function that it is of.
+    Kernel(Kernel, Name),
+    /// Before the pixels are known that make a picture of it.
+    Starburst(Starburst),
     /// What others are sums of, and which.
     Part(Part, Name),
 }
@@ -53,8 +59,8 @@ impl Function {
             Self::Abg(_) => Name::Abg,
             Self::Table(_) => Name::Table,
             Self::Camera => Name::Camera,
-            Self::Kernel(_) => Name::Kernel,
-            Self::Part(_, of) => *of,
+            Self::Starburst(_) => Name::Starburst,
+            Self::Kernel(_, of) | Self::Part(_, of) => *of,
         }
     }
 
@@ -72,7 +78,8 @@ impl Function {
             Self::Abg(abg) => abg.value(at),
             Self::Table(table) => table.value(at),
             Self::Camera => Camera.value(at),
-            Self::Kernel(kernel) => kernel.ring(at),
+            Self::Kernel(kernel, _) => kernel.ring(at),
+            Self::Starburst(starburst) => starburst.ring(at),
             Self::Part(part, _) => part.value(at),
         }
     }
@@ -93,7 +100,8 @@ impl Function {
                 Unit::Degrees
             }
             Self::Gaussian(_) | Self::Mixture(_) | Self::Abg(_) | Self::Table(_) | Self::Camera => Unit::Look,
-            Self::Kernel(_) => Unit::Pixels,
+            Self::Kernel(..) => Unit::Pixels,
+            Self::Starburst(_) => Unit::Micrometres,
         }
     }
 
@@ -103,10 +111,10 @@ impl Function {
             Self::Cie(_) | Self::Cie135(_) | Self::StilesHolladay { .. } => eye::CIE_END,
             Self::Spencer(_) | Self::Part(_, Name::Spencer) => eye::SPENCER_END,
             Self::Part(..) => eye::CIE_END,
-            Self::Gaussian(_) | Self::Mixture(_) | Self::Camera => f64::INFINITY,
+            Self::Gaussian(_) | Self::Mixture(_) | Self::Camera | Self::Starburst(_) => f64::INFINITY,
             Self::Abg(abg) => abg.end,
             Self::Table(table) => table.end(),
-            Self::Kernel(kernel) => kernel.end(),
+            Self::Kernel(kernel, _) => kernel.end(),
         }
     }
 
@@ -145,7 +153,8 @@ impl Function {
             Self::Abg(abg) => 0.5 * abg.core(),
             Self::Table(table) => table.first(),
             Self::Camera => Camera::WIDTHS[0],
-            Self::Kernel(_) => 1.0,
+            Self::Kernel(..) => 1.0,
+            Self::Starburst(starburst) => starburst.unit(),
             Self::Part(part, _) => part.scale(),
         }
     }
@@ -153,7 +162,10 @@ impl Function {
     /// 2π ∫ k from 0 to its end: sin θ dθ on the sphere, r dr in the plane.
     pub fn energy(&self) -> f64 {
         match self {
-            Self::Gaussian(_) | Self::Mixture(_) | Self::Table(_) | Self::Kernel(_) => 1.0,
+            Self::Gaussian(_) | Self::Mixture(_) | Self::Table(_) | Self::Kernel(_, Name::Kernel) => 1.0,
+            // What it scatters besides is known where the pixels are.
+            Self::Starburst(_) => 1.0,
+            Self::Kernel(kernel, _) => kernel.energies().iter().sum::<f64>() / 3.0,
             Self::Abg(abg) => abg.energy(),
             Self::Camera => Camera.energy(),
             _ => self.integrated(self.end()),
@@ -168,7 +180,8 @@ impl Function {
                 terms.iter().map(|term| -term.energy() * (-0.5 * (to / term.sigma).powi(2)).exp_m1()).sum()
             }
             Self::Table(table) => table.energy_within(to),
-            Self::Kernel(kernel) => kernel.energy_within(to),
+            Self::Kernel(kernel, _) => kernel.energy_within(to),
+            Self::Starburst(starburst) => starburst.within(to),
             // At 50 of its units nothing is left.
             Self::Camera => self.integrated(to.min(50.0)),
             _ if to.is_infinite() => self.energy(),
@@ -202,7 +215,8 @@ impl Function {
                 hankel::transform_within(&|r| self.value(r), self.scale(), abg.end, q)
             }
             // Its rings' straight lines bend at every pixel.
-            Self::Kernel(kernel) => hankel::transform(&|r| kernel.ring(r), self.scale(), kernel.end() + 1.0, q),
+            Self::Kernel(kernel, _) => hankel::transform(&|r| kernel.ring(r), self.scale(), kernel.end() + 1.0, q),
+            Self::Starburst(starburst) => starburst.transform(frequency),
             Self::Abg(_) | Self::Camera => hankel::transform(&|r| self.value(r), self.scale(), 3.0 * self.scale(), q),
             _ => {
                 let [constant, _] = self.moments();

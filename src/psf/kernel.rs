@@ -1,5 +1,9 @@
 //! A picture as a kernel, pixel by pixel.
 
+use std::sync::{Arc, OnceLock};
+
+use rayon::prelude::*;
+
 use super::Fault;
 
 /// A picture that every pixel is spread by, made to a mean energy of 1 over the three channels: a colour of its light
@@ -8,10 +12,12 @@ use super::Fault;
 pub struct Kernel {
     rows: usize,
     columns: usize,
-    /// Row by row from the top, three channels each.
-    pixels: Vec<[f64; 3]>,
-    /// The mean over the channels and over all pixels whose distance from the centre rounds to the index.
-    rings: Vec<f64>,
+    /// Row by row from the top, three channels each; millions, which copies share.
+    pixels: Arc<Vec<[f64; 3]>>,
+    /// What each channel spreads, over these pixels and beyond.
+    energies: [f64; 3],
+    /// The mean over the channels and over all pixels whose distance from the centre rounds to the index, once it is asked for.
+    rings: OnceLock<Vec<f64>>,
 }
 
 impl Kernel {
@@ -36,8 +42,14 @@ impl Kernel {
             return fault("it is black".into());
         }
         pixels.iter_mut().flatten().for_each(|x| *x /= energy);
-        let rings = rings(columns, [rows / 2, columns / 2], &pixels);
-        Ok(Self { rows, columns, pixels, rings })
+        Ok(Self { energies: sums(&pixels), rows, columns, pixels: Arc::new(pixels), rings: OnceLock::new() })
+    }
+
+    /// One of as many pixels as there are, of which none is negative, as they are; of each channel so much more falls `beyond` them.
+    pub(super) fn of_light(rows: usize, columns: usize, pixels: Vec<[f64; 3]>, beyond: [f64; 3]) -> Self {
+        let within = sums(&pixels);
+        let energies = [0, 1, 2].map(|channel| within[channel] + beyond[channel]);
+        Self { rows, columns, pixels: Arc::new(pixels), energies, rings: OnceLock::new() }
     }
 
     /// How many rows.
@@ -50,9 +62,14 @@ impl Kernel {
         self.columns
     }
 
-    /// What each pixel takes, row by row from the top; their sum is [`Kernel::energies`].
+    /// What each pixel takes, row by row from the top.
     pub fn pixels(&self) -> &[[f64; 3]] {
         &self.pixels
+    }
+
+    /// The same, to be kept by others.
+    pub(crate) fn shared(&self) -> Arc<Vec<[f64; 3]>> {
+        self.pixels.clone()
     }
 
     /// The row and the column of the centre.
@@ -60,9 +77,10 @@ impl Kernel {
         [self.rows / 2, self.columns / 2]
     }
 
-    /// The sum of each channel; their mean is 1.
+    /// What each channel spreads: of a picture from a file the sums of the channels, whose mean is 1; of others with what falls beyond
+    /// it.
     pub fn energies(&self) -> [f64; 3] {
-        [0, 1, 2].map(|channel| self.pixels.iter().map(|pixel| pixel[channel]).sum())
+        self.energies
     }
 
     /// The pixel at the centre.
@@ -73,19 +91,24 @@ impl Kernel {
     /// The mean over directions and channels at a distance in pixels, between whole ones by a straight line, for plots:
     /// a kernel need not be round.
     pub fn ring(&self, r: f64) -> f64 {
-        let at = |i: usize| self.rings.get(i).copied().unwrap_or(0.0);
+        let rings = self.rings();
+        let at = |i: usize| rings.get(i).copied().unwrap_or(0.0);
         if r.is_nan() {
             return r;
         }
         // As large as it may be, `as` stays within usize.
         let (below, part) = (r.floor(), r - r.floor());
         let below = below as usize;
-        if below >= self.rings.len() { 0.0 } else { at(below) * (1.0 - part) + at(below + 1) * part }
+        if below >= rings.len() { 0.0 } else { at(below) * (1.0 - part) + at(below + 1) * part }
     }
 
     /// The distance of the farthest pixel's ring.
     pub(super) fn end(&self) -> f64 {
-        self.rings.len() as f64
+        self.rings().len() as f64
+    }
+
+    fn rings(&self) -> &[f64] {
+        self.rings.get_or_init(|| rings(self.columns, self.centre(), &self.pixels))
     }
 
     /// The energy, mean of the channels, of the pixels within a distance.
@@ -102,6 +125,13 @@ impl Kernel {
             .map(|(_, pixel)| pixel.iter().sum::<f64>() / 3.0)
             .sum()
     }
+}
+
+/// The sums of the channels, in parallel and always in the same order.
+pub(super) fn sums(pixels: &[[f64; 3]]) -> [f64; 3] {
+    let add = |a: [f64; 3], b: &[f64; 3]| [0, 1, 2].map(|channel| a[channel] + b[channel]);
+    let parts: Vec<[f64; 3]> = pixels.par_chunks(4096).map(|part| part.iter().fold([0.0; 3], add)).collect();
+    parts.iter().fold([0.0; 3], add)
 }
 
 /// The means over rings of one pixel.

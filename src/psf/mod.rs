@@ -10,6 +10,7 @@
 //! | `function` | the functions by one interface, unscaled |
 //! | `eye` | those of the eye, in degrees |
 //! | `plane`, `table`, `kernel` | those of a picture, in the look's unit or pixels |
+//! | `starburst` | what an iris diffracts, on the pixels of a photo |
 //! | `basis`, `parts` | functions as weighted sums of functions that do not change with age, pigment or light |
 //! | `integral`, `hankel` | energies and transforms |
 //! | `fit`, `observers` | mixtures of Gaussians within a tolerance, and of one set of widths for all ages |
@@ -32,6 +33,7 @@ mod parameters;
 mod parts;
 mod plane;
 mod profile;
+mod starburst;
 mod table;
 mod tail;
 #[cfg(test)]
@@ -49,6 +51,7 @@ pub use observers::Observers;
 pub use parameters::{Name, Parameters};
 pub use plane::{EXPONENTS, MOST_WIDTHS, Term};
 pub use profile::{Mode, Profile, Row};
+pub use starburst::{BLADES, FSTOPS, Grid, SENSORS, Starburst, USUAL_BLADES, USUAL_SENSOR};
 pub use table::Table;
 pub use tail::Tail;
 
@@ -61,7 +64,7 @@ const PLACES: usize = 400;
 /// A point-spread function.
 ///
 /// Angles and radii are in its [`Psf::unit`]; of those in degrees the values are per steradian, of the others per
-/// square of the unit. All are radial but `kernel`, whose values here are means over directions. The energy is what all
+/// square of the unit. All are radial but `kernel` and `starburst`, whose values here are means over directions. The energy is what all
 /// of a source's light is taken by: f = ∫ k dΩ.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Psf {
@@ -144,14 +147,50 @@ impl Psf {
 
     /// A picture.
     pub fn kernel(kernel: Kernel) -> Self {
-        Self::of(Function::Kernel(kernel))
+        Self::of(Function::Kernel(kernel, Name::Kernel))
     }
 
-    /// The same function with the energy `scatter`.
+    /// What an iris diffracts: all of the light, of which most stays in its pixel; see [`Psf::on`].
+    pub fn starburst(starburst: Starburst) -> Self {
+        Self::of(Function::Starburst(starburst))
+    }
+
+    /// The function on the pixels of a photo: of `starburst` a picture, in pixels, of the light that leaves one; of any other that
+    /// itself.
+    #[must_use]
+    pub fn on(&self, grid: &Grid) -> Self {
+        match &self.function {
+            Function::Starburst(starburst) => Self::of(Function::Kernel(starburst.kernel(grid), Name::Starburst)),
+            _ => self.clone(),
+        }
+    }
+
+    /// f on the pixels of a photo by channels, without the picture that [`Psf::on`] makes.
+    pub fn energies_on(&self, grid: &Grid) -> [f64; 3] {
+        match &self.function {
+            Function::Starburst(starburst) => starburst.energies(grid),
+            _ => self.energies(),
+        }
+    }
+
+    /// Whether it is another one for other photos.
+    pub fn is_of_pixels(&self) -> bool {
+        matches!(self.function, Function::Starburst(_))
+    }
+
+    /// Whether it is the same in all directions.
+    pub fn is_round(&self) -> bool {
+        !matches!(self.function, Function::Starburst(_) | Function::Kernel(..))
+    }
+
+    /// The same function with the energy `scatter`; of `starburst`, with so much of the light that its lens scatters besides.
     ///
     /// # Errors
-    /// On one that is not above 0 and at most 1.
+    /// On one that is not above 0 and at most 1; of `starburst` 0 is right, too.
     pub fn scattering(self, scatter: f64) -> Result<Self, Fault> {
+        if let Function::Starburst(starburst) = self.function {
+            return starburst.scattering(scatter).map(Self::starburst);
+        }
         let scatter =
             fault::within("scatter", scatter, [1e-12, 1.0], "the scattered share is above 0, from 1e-12, to 1")?;
         Ok(Self { scale: scatter / self.function.energy(), energy: scatter, function: self.function })
@@ -183,7 +222,7 @@ impl Psf {
         match &self.function {
             Function::Mixture(terms) => [0, 1, 2]
                 .map(|channel| self.scale * terms.iter().map(|term| term.weight * term.tint[channel]).sum::<f64>()),
-            Function::Kernel(kernel) => kernel.middle().map(|middle| self.scale * middle),
+            Function::Kernel(kernel, _) => kernel.middle().map(|middle| self.scale * middle),
             _ => [self.centre(); 3],
         }
     }
@@ -199,7 +238,7 @@ impl Psf {
         match &self.function {
             Function::Mixture(terms) => [0, 1, 2]
                 .map(|channel| self.scale * terms.iter().map(|term| term.energy() * term.tint[channel]).sum::<f64>()),
-            Function::Kernel(kernel) => kernel.energies().map(|energy| self.scale * energy),
+            Function::Kernel(kernel, _) => kernel.energies().map(|energy| self.scale * energy),
             _ => [self.energy; 3],
         }
     }
@@ -219,10 +258,10 @@ impl Psf {
         self.function.flat_within()
     }
 
-    /// The picture of `kernel`, and what its pixels are to be taken by.
+    /// The picture of `kernel`, or of `starburst` on pixels, and what its pixels are to be taken by.
     pub fn picture(&self) -> Option<(&Kernel, f64)> {
         match &self.function {
-            Function::Kernel(kernel) => Some((kernel, self.scale)),
+            Function::Kernel(kernel, _) => Some((kernel, self.scale)),
             _ => None,
         }
     }
@@ -242,7 +281,7 @@ impl Psf {
     /// constant. A function that all but vanishes, as `camera` beyond three units, is followed to there.
     ///
     /// # Errors
-    /// On a range or a tolerance that is none, and for `kernel`, which is not radial.
+    /// On a range or a tolerance that is none, and for `kernel` and `starburst`, which are not radial.
     pub fn mixture(&self, range: [f64; 2], tolerance: f64) -> Result<Mixture, Fault> {
         let ([from, to], tolerance) = fit::checked(range, tolerance)?;
         let range = [from, to.min(self.function.reach().max(from))];
@@ -260,7 +299,7 @@ impl Psf {
     pub fn may_be_mixture(&self, range: [f64; 2], tolerance: f64) -> bool {
         // The others are such mixtures by their formulas.
         if !matches!(self.function, Function::Table(_) | Function::Abg(_)) {
-            return !matches!(self.function, Function::Kernel(_));
+            return self.is_round();
         }
         let places: Vec<f64> = fit::even_in_logarithm(range, PLACES).collect();
         fit::above_convex(|at| self.function.value(at), &places) <= ((1.0 + tolerance) / (1.0 - tolerance)).ln() + 1e-9
@@ -293,8 +332,9 @@ impl Psf {
     /// The mixture of a function that needs no fit.
     fn known_mixture(&self, range: [f64; 2]) -> Result<Option<Mixture>, Fault> {
         Ok(match &self.function {
-            Function::Kernel(_) => {
-                return Err(Fault::new("kernel", "a picture is no mixture of round Gaussians"));
+            Function::Kernel(..) | Function::Starburst(_) => {
+                let reason = format!("{} is a picture and no mixture of round Gaussians", self.name());
+                return Err(Fault::new("psf", reason));
             }
             Function::Gaussian(terms) | Function::Mixture(terms) => {
                 let mut terms = terms.clone();

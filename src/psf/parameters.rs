@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::eye::{Luminance, Observer};
 use super::function::Function;
 use super::plane::{self, Abg};
+use super::starburst::{self, Starburst};
 use super::{Fault, Kernel, Psf, Table};
 
 /// The functions that there are.
@@ -39,11 +40,13 @@ pub enum Name {
     Camera,
     /// A picture.
     Kernel,
+    /// An iris, by what it diffracts.
+    Starburst,
 }
 
 impl Name {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Cie,
         Self::Cie135,
         Self::Spencer,
@@ -54,6 +57,7 @@ impl Name {
         Self::Table,
         Self::Camera,
         Self::Kernel,
+        Self::Starburst,
     ];
 
     /// As it is written.
@@ -69,6 +73,7 @@ impl Name {
             Self::Table => "table",
             Self::Camera => "camera",
             Self::Kernel => "kernel",
+            Self::Starburst => "starburst",
         }
     }
 
@@ -84,6 +89,7 @@ impl Name {
             Self::Table => &["table"],
             Self::Camera => &[],
             Self::Kernel => &["kernel"],
+            Self::Starburst => &["fstop", "blades", "rotation", "roundness", "sensor"],
         }
     }
 }
@@ -150,14 +156,30 @@ pub struct Parameters {
     /// Of `kernel`: a picture.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kernel: Option<PathBuf>,
-    /// Of all: the share of the light that is scattered, instead of the function's own energy; above 0, at most 1.
+    /// Of `starburst`: the f-number, 0.5 to 64.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fstop: Option<f64>,
+    /// Of `starburst`: blades of the iris, 3 to 16, or 0 where it is round; 6 without any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub blades: Option<u32>,
+    /// Of `starburst`: degrees against the clock from the right to the first corner; 0 without any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rotation: Option<f64>,
+    /// Of `starburst`: how far its blades are bent, from 0, straight, to 1, a circle; 0 without any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub roundness: Option<f64>,
+    /// Of `starburst`: millimetres of the sensor that the photo's width spans, 1 to 500; 36 without any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sensor: Option<f64>,
+    /// Of all: the share of the light that is scattered, instead of the function's own energy; above 0, at most 1. Of `starburst`: what
+    /// the lens scatters besides, by `camera`, from 0; 0 without any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scatter: Option<f64>,
 }
 
 impl Parameters {
     /// The keys that there are, as they are written.
-    pub const KEYS: [&str; 15] = [
+    pub const KEYS: [&str; 20] = [
         "psf",
         "age",
         "pigment",
@@ -172,6 +194,11 @@ impl Parameters {
         "end",
         "table",
         "kernel",
+        "fstop",
+        "blades",
+        "rotation",
+        "roundness",
+        "sensor",
         "scatter",
     ];
 
@@ -192,6 +219,11 @@ impl Parameters {
             end: None,
             table: None,
             kernel: None,
+            fstop: None,
+            blades: None,
+            rotation: None,
+            roundness: None,
+            sensor: None,
             scatter: None,
         }
     }
@@ -212,6 +244,11 @@ impl Parameters {
             ("end", self.end.is_some()),
             ("table", self.table.is_some()),
             ("kernel", self.kernel.is_some()),
+            ("fstop", self.fstop.is_some()),
+            ("blades", self.blades.is_some()),
+            ("rotation", self.rotation.is_some()),
+            ("roundness", self.roundness.is_some()),
+            ("sensor", self.sensor.is_some()),
         ]
         .into_iter()
         .filter_map(|(key, given)| given.then_some(key))
@@ -250,13 +287,27 @@ impl Parameters {
             }
             Name::Table => Function::Table(Table::parse(&table(needed(name, "table", self.table.as_ref())?)?)?),
             Name::Camera => Function::Camera,
-            Name::Kernel => Function::Kernel(kernel(needed(name, "kernel", self.kernel.as_ref())?)?),
+            Name::Kernel => Function::Kernel(kernel(needed(name, "kernel", self.kernel.as_ref())?)?, name),
+            Name::Starburst => Function::Starburst(self.starburst()?),
         };
         let psf = Psf::of(function);
         match self.scatter {
             Some(scatter) => psf.scattering(scatter),
             None => Ok(psf),
         }
+    }
+}
+
+impl Parameters {
+    /// The iris of `starburst`, without what its lens scatters.
+    fn starburst(&self) -> Result<Starburst, Fault> {
+        Starburst::new(
+            needed(self.psf, "fstop", self.fstop)?,
+            self.blades.unwrap_or(starburst::USUAL_BLADES),
+            self.rotation.unwrap_or(0.0),
+            self.roundness.unwrap_or(0.0),
+            self.sensor.unwrap_or(starburst::USUAL_SENSOR),
+        )
     }
 }
 

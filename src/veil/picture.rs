@@ -1,5 +1,7 @@
 //! A picture as a kernel: any shape, each channel its own.
 
+use std::sync::Arc;
+
 use super::error::Error;
 
 /// The most that a pixel of a kernel may spread.
@@ -22,7 +24,8 @@ pub enum Energy {
 pub struct Picture {
     size: [usize; 2],
     centre: [usize; 2],
-    pixels: Vec<[f64; 3]>,
+    /// Millions, which copies share.
+    pixels: Arc<Vec<[f64; 3]>>,
 }
 
 impl Picture {
@@ -32,7 +35,8 @@ impl Picture {
     /// # Errors
     /// [`Error::Kernel`]: another number of pixels than the size says, or none; a centre beyond it; a pixel that is negative or
     /// no number; nothing but black.
-    pub fn new(size: [usize; 2], centre: [usize; 2], pixels: Vec<[f64; 3]>) -> Result<Self, Error> {
+    pub fn new(size: [usize; 2], centre: [usize; 2], pixels: impl Into<Arc<Vec<[f64; 3]>>>) -> Result<Self, Error> {
+        let pixels = pixels.into();
         let [width, height] = size;
         if pixels.is_empty() || width.checked_mul(height) != Some(pixels.len()) {
             return Err(Error::Kernel(format!(
@@ -70,7 +74,7 @@ impl Picture {
             Energy::Each => energies.map(|energy| if energy > 0.0 { energy } else { 1.0 }),
         };
         let divide = |pixel: &mut [f64; 3]| pixel.iter_mut().zip(by).for_each(|(value, by)| *value /= by);
-        self.pixels.iter_mut().for_each(divide);
+        Arc::make_mut(&mut self.pixels).iter_mut().for_each(divide);
         self
     }
 
@@ -82,7 +86,7 @@ impl Picture {
         if !(factor.is_finite() && factor > 0.0) {
             return Err(Error::Kernel(format!("a kernel is taken a number above 0 times, and not {factor}")));
         }
-        let pixels = self.pixels.iter().map(|pixel| pixel.map(|value| value * factor)).collect();
+        let pixels: Vec<_> = self.pixels.iter().map(|pixel| pixel.map(|value| value * factor)).collect();
         Self::new(self.size, self.centre, pixels)
     }
 

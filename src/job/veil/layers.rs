@@ -4,11 +4,12 @@ use rayon::prelude::*;
 
 use super::account::Loss;
 use super::planning::Held;
-use super::{Ledger, Seat, check, coarse, computed, failed, ledger, light, raised, seated, terms};
+use super::{Ledger, Seat, check, coarse, computed, enlarged, failed, ledger, light, on_pixels, raised, seated, terms};
 use crate::Result;
 use crate::frame::Frame;
 use crate::look::{Look, Veil as Wanted};
 use crate::photo::Photo;
+use crate::psf::Grid;
 use crate::scene::{Emission, Recover};
 use crate::veil;
 
@@ -23,6 +24,8 @@ pub struct VeilSums {
     /// The veils whose weighted sum it is, each of a function that scatters all of the light.
     parts: Vec<Wanted>,
     seat: Seat,
+    /// The pixels, where the function has to know them.
+    grid: Option<Grid>,
     held: Held,
     /// How clipped pixels shine.
     recover: Recover,
@@ -57,10 +60,11 @@ impl VeilSums {
     /// [`crate::Error::Usage`] where the look contradicts itself or the photo.
     pub fn of(look: &Look, photo: &Photo, frame: &Frame) -> Result<Option<(Self, Vec<[f64; 3]>)>> {
         let Some(wanted) = look.veil_on(frame) else { return Ok(None) };
-        check(look, wanted)?;
+        check(look, wanted, frame)?;
         let (_, seat) = seated(look, wanted, photo, frame)?;
         let (parts, weights) = wanted.parts(MOST_LAYERS);
-        let sums = Self { parts, seat, held: Held::new(look, wanted), recover: look.find.recover };
+        let grid = wanted.grid(&enlarged(look, frame));
+        let sums = Self { parts, seat, grid, held: Held::new(look, wanted), recover: look.find.recover };
         Ok(Some((sums, weights)))
     }
 
@@ -78,6 +82,7 @@ impl VeilSums {
         let sources = veil::Photo::rgba(filled.as_flattened(), seat.size).map_err(failed)?;
         let mut all = VeilLayers { layers: Vec::new(), asked: self.held.asked, predicted: 0.0, terms: 0, raised: None };
         for part in &self.parts {
+            let part = &on_pixels(part, self.grid.as_ref())?;
             let (channels, asked) = self.held.channels(part.psf(), seat.pixels(part.border))?;
             let veil::Veil { planes, certified, .. } = seat.cropped(computed(&channels, &sources)?);
             let loses = Loss::new(&part.clone().adding(false), seat, 1.0);
@@ -183,11 +188,13 @@ mod tests {
             scatter: Some(0.2),
             ..Parameters::new(Name::Mixture)
         };
+        let starburst = Parameters { fstop: Some(22.0), scatter: Some(0.05), ..Parameters::new(Name::Starburst) };
         for look in [
             look(aged(25.0), None, 1.0, false),
             look(aged(75.0), Some(Projection::Planar), 0.7, false),
             look(Parameters { scatter: Some(0.2), ..aged(60.0) }, None, 3.0, true),
             look(tinted, None, 2.0, false),
+            look(starburst, None, 1.5, false),
             // Of pixels that are coarser than its core, which is told.
             Look { fov: Some(150.0), ..look(aged(25.0), Some(Projection::Planar), 1.0, false) },
         ] {

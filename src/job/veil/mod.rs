@@ -18,10 +18,10 @@ use crate::choices::Normalize;
 use crate::frame::Frame;
 use crate::look::{Look, Veil as Wanted};
 use crate::photo::{Photo, View};
-use crate::psf::{Fault, Unit};
+use crate::psf::{Fault, Grid, Name, Unit};
 use crate::scene::{Emission, Recovered};
 use crate::veil::{self, Predicted};
-use crate::{Error, Result};
+use crate::{Error, Result, limits};
 
 pub use account::{Ledger, NoSources, VeilError, Veiled};
 use account::{Loss, ledger, no_sources};
@@ -49,6 +49,8 @@ pub(super) struct Cast {
 
 /// What is known of a veil before anything is summed.
 pub(super) struct Prepared {
+    /// The veil on these pixels.
+    wanted: Wanted,
     view: Option<View>,
     seat: Seat,
     /// A plan and a kernel for all channels, or one for each.
@@ -59,20 +61,38 @@ pub(super) struct Prepared {
 
 /// Plans the veil of a look for pixels of a frame, which is the photo's, or that of a photo made larger or smaller.
 fn prepared(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame, stages: &mut Stages) -> Result<Prepared> {
-    check(look, wanted)?;
+    check(look, wanted, frame)?;
     let (view, seat) = seated(look, wanted, photo, frame)?;
     let held = Held::new(look, wanted);
-    let (channels, asked) = stages.time("veil plan", || held.channels(wanted.psf(), seat.pixels(wanted.border)))?;
-    Ok(Prepared { view, seat, channels, asked })
+    stages.time("veil plan", || {
+        let wanted = on_pixels(wanted, wanted.grid(&enlarged(look, frame)).as_ref())?;
+        let (channels, asked) = held.channels(wanted.psf(), seat.pixels(wanted.border))?;
+        Ok(Prepared { wanted, view, seat, channels, asked })
+    })
 }
 
 /// How a photo was seen, where that matters, and where the pixels of a frame lie for a veil.
 fn seated(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame) -> Result<(Option<View>, Seat)> {
     let view = seen(look, wanted, photo)?.map(|view| view.resized(&photo.frame, frame));
-    // A look that is made larger is so by its veil, too, where that is on the picture's plane.
-    let enlarged = frame.in_units_of(frame.unit * look.size);
-    let seat = Seat::new(wanted, &enlarged, view.as_ref())?;
+    let seat = Seat::new(wanted, &enlarged(look, frame), view.as_ref())?;
     Ok((view, seat))
+}
+
+/// The veil on pixels that its function has to know.
+///
+/// # Errors
+/// Where the system has no room for a picture of it.
+fn on_pixels(wanted: &Wanted, grid: Option<&Grid>) -> Result<Wanted> {
+    if let Some(Grid { stored: [columns, rows], .. }) = grid {
+        let bytes = 4 * size_of::<[f64; 3]>() as u64 * *columns as u64 * *rows as u64;
+        limits::room(bytes, "the picture of the veil's function")?;
+    }
+    Ok(wanted.on(grid))
+}
+
+/// A look that is made larger is so by its veil, too, where that is on the picture's plane.
+fn enlarged(look: &Look, frame: &Frame) -> Frame {
+    frame.in_units_of(frame.unit * look.size)
 }
 
 /// How the veil of a look would be computed on the pixels of a frame, which is the photo's, or that of a photo made larger or
@@ -83,7 +103,7 @@ fn seated(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame) -> Result<
 pub fn plan_veil(look: &Look, photo: &Photo, frame: &Frame) -> Result<Option<VeilPlanned>> {
     let Some(wanted) = look.veil_on(frame) else { return Ok(None) };
     let prepared = prepared(look, wanted, photo, frame, &mut Stages::default())?;
-    Ok(Some(VeilPlanned::new(look, wanted, frame, prepared)))
+    Ok(Some(VeilPlanned::new(look, frame, prepared)))
 }
 
 /// The veil that a look asks for, of a photo that shines as it is `recovered`; none without one.
@@ -101,7 +121,8 @@ pub(super) fn cast(
     stages: &mut Stages,
 ) -> Result<Option<Cast>> {
     let Some(wanted) = look.veil_on(frame) else { return Ok(None) };
-    let Prepared { view, seat, channels, asked } = prepared(look, wanted, photo, frame, stages)?;
+    let Prepared { wanted, view, seat, channels, asked } = prepared(look, wanted, photo, frame, stages)?;
+    let wanted = &wanted;
     let pixels = &*Emission::of(photo).given(recovered.over(&photo.pixels));
     let stored = veil::Photo::rgba(pixels.as_flattened(), seat.stored).map_err(failed)?;
     let filled = seat.filled(pixels);
@@ -158,10 +179,11 @@ fn raised(tolerance: f64, asked: f64) -> Option<String> {
 
 /// Says so where a size is asked for of a veil that has none.
 fn without_size(look: &Look, veil: &Wanted) -> Option<String> {
-    let why = match veil.psf().unit() {
-        Unit::Look => return None,
-        Unit::Degrees => "is in degrees",
-        Unit::Pixels => "is a picture, one pixel of it for one of the photo",
+    let why = match (veil.psf().unit(), veil.psf().name()) {
+        (Unit::Look, _) => return None,
+        (Unit::Degrees, _) => "is in degrees",
+        (_, Name::Starburst) => "is as large as the f-number and the sensor make it",
+        (Unit::Pixels | Unit::Micrometres, _) => "is a picture, one pixel of it for one of the photo",
     };
     let (size, name) = (look.size, veil.psf().name());
     (size != 1.0).then(|| format!("a size of {size} changes nothing of the veil, whose function, {name}, {why}"))
@@ -181,11 +203,11 @@ fn coarse(lost: [f64; 3]) -> Option<String> {
 }
 
 /// Whether a look's veil can be what it says.
-fn check(look: &Look, veil: &Wanted) -> Result<()> {
+fn check(look: &Look, veil: &Wanted, frame: &Frame) -> Result<()> {
     if look.normalize != Normalize::None {
         return Err(Error::Usage("a veil needs --normalize none: only that glare is physical".into()));
     }
-    let most = veil.psf().energies().into_iter().fold(0.0, f64::max);
+    let most = veil.energies(&enlarged(look, frame)).into_iter().fold(0.0, f64::max);
     if look.strength * most >= 1.0 && !veil.adds {
         return Err(Error::Usage(format!(
             "a strength of {} scatters {:.3} of the light, and there is no more than all of it: give less, or --mix add to keep the \

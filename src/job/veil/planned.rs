@@ -71,8 +71,9 @@ impl VeilSeen {
 }
 
 impl VeilPlanned {
-    pub(super) fn new(look: &Look, wanted: &Wanted, frame: &Frame, prepared: Prepared) -> Self {
-        let Prepared { view, channels, asked, .. } = prepared;
+    pub(super) fn new(look: &Look, frame: &Frame, prepared: Prepared) -> Self {
+        let Prepared { wanted, view, channels, asked, .. } = prepared;
+        let wanted = &wanted;
         let Predicted { bound, rounding, operations, direct, lattices, dropped, reach } = predicted(&channels);
         Self {
             seen: VeilSeen::new(wanted, frame, view),

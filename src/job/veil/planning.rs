@@ -158,6 +158,7 @@ fn channels(psf: &Psf, pixels: Pixels, tolerance: f64) -> Result<Vec<Channel>, R
 pub(crate) fn plan_of(veil: &Wanted, frame: &Frame, view: Option<&View>, tolerance: f64) -> Result<Plan> {
     let geometry = veil.geometry(frame, view).map_err(told)?;
     let size = [frame.width as usize, frame.height as usize];
+    let veil = veil.on(veil.grid(frame).as_ref());
     let mut channels = channels(veil.psf(), Pixels { geometry: &geometry, size, border: veil.border }, tolerance)
         .map_err(|refusal| refusal.error)?;
     Ok(channels.swap_remove(0).0)
@@ -214,9 +215,9 @@ fn positive(psf: &Psf, range: [f64; 2], tolerance: f64, looser: f64) -> Result<O
 /// A picture as a kernel, so many times what it is.
 fn picture(kernel: &psf::Kernel, times: f64) -> Result<Picture> {
     let [row, column] = kernel.centre();
-    Picture::new([kernel.columns(), kernel.rows()], [column, row], kernel.pixels().to_vec())
-        .and_then(|picture| picture.times(times))
-        .map_err(failed)
+    let picture = Picture::new([kernel.columns(), kernel.rows()], [column, row], kernel.shared());
+    let scaled = if times == 1.0 { picture } else { picture.and_then(|picture| picture.times(times)) };
+    scaled.map_err(failed)
 }
 
 #[cfg(test)]

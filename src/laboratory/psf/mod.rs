@@ -18,8 +18,8 @@ use crate::{Result, target};
 /// Prints its energy, its value at the centre, how much of its light lies within some angles, and the Gaussians by which
 /// `apply --veil` computes it, with their error; draws and writes all of that.
 ///
-/// cie, cie135, spencer and stiles-holladay are the human eye's, in degrees and per steradian; the others are in the
-/// look's unit, and per square of it. cie keeps its value at 0.1 degrees inside of that, and
+/// cie, cie135, spencer and stiles-holladay are the human eye's, in degrees and per steradian; starburst is in micrometres on the
+/// sensor, as a mean over directions and colours; the others are in the look's unit, and per square of it. cie keeps its value at 0.1 degrees inside of that, and
 /// stiles-holladay that at 1 degree; spencer is without the ring, whose place depends on the wavelength.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
@@ -31,7 +31,7 @@ pub struct Args {
     #[command(flatten)]
     psf: PsfArgs,
 
-    /// The angles or radii [default: 0.1 to 100 degrees, from 0.01 for cie135 and spencer; 0.001 to 2 of the look's unit]
+    /// The angles or radii [default: 0.1 to 100 degrees, from 0.01 for cie135 and spencer; 0.001 to 2 of the look's unit; 1 to 20000 micrometres]
     #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true, value_parser = range)]
     range: Option<Range>,
 
@@ -57,7 +57,8 @@ Examples:
   vglare psf cie --age 60 --plot psf.svg --csv psf.csv
   vglare psf spencer --luminance scotopic --tolerance 1e-3
   vglare psf abg --abg 1e-4,1e-3,2.5
-  vglare psf table --table measured.csv --plot psf.png";
+  vglare psf table --table measured.csv --plot psf.png
+  vglare psf starburst --fstop 16 --blades 7";
 
 /// `--range`.
 #[derive(Debug, Clone, Copy)]
@@ -98,10 +99,8 @@ pub fn run(args: &Args) -> Result<()> {
     let parameters = args.psf.over(Parameters::new(args.name));
     let psf = told(VeilFunction::new(&parameters))?.psf().clone();
     let range = args.range.map_or_else(|| usual(&psf), |Range(range)| range);
-    let mixture = match psf.picture() {
-        Some(_) => None,
-        None => Some(psf.mixture(range, args.tolerance).map_err(|fault| wrong(&fault))?),
-    };
+    let mixture =
+        if psf.is_round() { Some(psf.mixture(range, args.tolerance).map_err(|fault| wrong(&fault))?) } else { None };
     let profile = psf.profile(range, mixture.as_ref(), ROWS).map_err(|fault| wrong(&fault))?;
     let shown = Shown { psf, range, mixture, profile };
     if let Some((path, kind)) = drawn {
@@ -120,6 +119,7 @@ fn usual(psf: &Psf) -> [f64; 2] {
         (Unit::Degrees, _) => [psf.flat_within().max(0.1), psf.end()],
         (Unit::Look, _) => [1e-3, 2.0],
         (Unit::Pixels, _) => [1.0, 1000.0],
+        (Unit::Micrometres, _) => [1.0, 2e4],
     }
 }
 
@@ -170,6 +170,7 @@ pub(super) fn units(unit: Unit) -> (&'static str, &'static str) {
         Unit::Degrees => ("°", "steradian"),
         Unit::Look => (" half heights", "square of a half height"),
         Unit::Pixels => (" pixels", "pixel"),
+        Unit::Micrometres => (" µm", "square µm"),
     }
 }
 

@@ -27,11 +27,18 @@ fn every_name_has_a_function() {
         "psf = 'table'\ntable = '0.3'",
         "psf = 'camera'",
         "psf = 'kernel'\nkernel = 'star.exr'",
+        "psf = 'starburst'\nfstop = 16\nblades = 7\nrotation = -10\nroundness = 0.2\nsensor = 23.5",
     ];
     for (text, name) in texts.into_iter().zip(Name::ALL) {
         let psf = function(text).unwrap();
         assert_eq!((psf.name(), name.to_string().parse().unwrap()), (name, name));
         let scattered = function(&format!("{text}\nscatter = 0.25")).unwrap();
+        if name == Name::Starburst {
+            // What the lens scatters besides is none of its own light.
+            assert!((scattered.value(20.0) / psf.value(20.0) - 0.75).abs() < 1e-12);
+            assert_eq!((psf.unit(), psf.energy(), scattered.energy()), (Unit::Micrometres, 1.0, 1.0));
+            continue;
+        }
         assert!((scattered.energy() - 0.25).abs() < 1e-15);
         assert!((scattered.value(0.15) / psf.value(0.15) * psf.energy() / 0.25 - 1.0).abs() < 1e-12, "{text}");
         let degrees = matches!(name, Name::Cie | Name::Cie135 | Name::Spencer | Name::StilesHolladay);
@@ -65,6 +72,19 @@ fn what_is_wrong_is_told_by_its_key() {
         ("psf = 'table'", "table"),
         ("psf = 'table'\ntable = '-1'", "table"),
         ("psf = 'kernel'", "kernel"),
+        ("psf = 'starburst'", "fstop"),
+        ("psf = 'starburst'\nfstop = 0.4", "fstop"),
+        ("psf = 'starburst'\nfstop = nan", "fstop"),
+        ("psf = 'starburst'\nfstop = 8\nblades = 2", "blades"),
+        ("psf = 'starburst'\nfstop = 8\nblades = 17", "blades"),
+        ("psf = 'starburst'\nfstop = 8\nrotation = inf", "rotation"),
+        ("psf = 'starburst'\nfstop = 8\nblades = 0\nrotation = 5", "rotation"),
+        ("psf = 'starburst'\nfstop = 8\nroundness = 1.1", "roundness"),
+        ("psf = 'starburst'\nfstop = 8\nblades = 0\nroundness = 0.5", "roundness"),
+        ("psf = 'starburst'\nfstop = 8\nsensor = 0", "sensor"),
+        ("psf = 'starburst'\nfstop = 8\nscatter = 1.1", "scatter"),
+        ("psf = 'starburst'\nfstop = 8\nage = 3", "age"),
+        ("psf = 'camera'\nfstop = 8", "fstop"),
         ("psf = 'camera'\nscatter = 0", "scatter"),
         ("psf = 'camera'\nscatter = 1.5", "scatter"),
         ("psf = 'camera'\nscatter = nan", "scatter"),

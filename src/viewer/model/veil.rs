@@ -17,6 +17,8 @@ const SOME: f64 = 0.1;
 const WIDTH: f64 = 0.1;
 const WIDTHS: [f64; 2] = [0.02, 0.2];
 const TAIL: [f64; 3] = [1e-4, 1e-3, 2.5];
+/// The f-number that an iris begins with: its spikes are seen.
+const FSTOP: f64 = 16.0;
 
 impl Look {
     /// Takes another function for the veil, with the numbers that it begins with, or none at all. Border, projection and tolerance
@@ -34,6 +36,7 @@ impl Look {
             Name::Gaussian => Parameters { width: Some(WIDTH), ..parameters },
             Name::Mixture => Parameters { widths: Some(WIDTHS.to_vec()), ..parameters },
             Name::Abg => Parameters { a: Some(TAIL[0]), b: Some(TAIL[1]), g: Some(TAIL[2]), ..parameters },
+            Name::Starburst => Parameters { fstop: Some(FSTOP), ..parameters },
             _ => parameters,
         })
     }
@@ -65,7 +68,8 @@ impl Look {
             ..section
         };
         let most = veil.psf().energies().into_iter().fold(0.0, f64::max);
-        if !adds && self.strength * most >= NEARLY_ALL {
+        // What leaves a pixel is known where the photo is, and the lens's own scatter is something else.
+        if !veil.psf().is_of_pixels() && !adds && self.strength * most >= NEARLY_ALL {
             let all = matches!(name, Name::Cie135 | Name::Spencer);
             // Of the function's mean energy, where its colours differ.
             let share = if all { NEARLY_ALL } else { SOME } / self.strength.max(1.0);
@@ -123,7 +127,7 @@ mod tests {
                 let mut look = Look { strength, veil: None, ..Look::default() };
                 let needs_file = matches!(name, Name::Table | Name::Kernel);
                 assert_eq!(look.choose_psf(Some(name)).is_err(), needs_file, "{name}");
-                let Some(veil) = &look.veil else { continue };
+                let Some(veil) = look.veil.as_ref().filter(|veil| !veil.psf().is_of_pixels()) else { continue };
                 let most = veil.psf().energies().into_iter().fold(0.0, f64::max);
                 assert!(veil.psf().name() == name && strength * most < 1.0, "{name} at {strength}: {most}");
             }

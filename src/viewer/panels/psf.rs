@@ -5,12 +5,15 @@ use egui::{Grid, Ui};
 use super::colour;
 use crate::look::Veil;
 use crate::printable;
-use crate::psf::{AGES, EXPONENTS, Luminance, MOST_WIDTHS, Name, PIGMENTS, Parameters};
+use crate::psf::{
+    AGES, BLADES, EXPONENTS, FSTOPS, Luminance, MOST_WIDTHS, Name, PIGMENTS, Parameters, SENSORS, USUAL_BLADES,
+    USUAL_SENSOR,
+};
 use crate::viewer::ask::Purpose;
 use crate::viewer::control::{Number, brief, button, cell, choice, done_by};
 use crate::viewer::document::Document;
 
-const FUNCTIONS: [(Option<Name>, &str, &str); 11] = [
+const FUNCTIONS: [(Option<Name>, &str, &str); 12] = [
     (None, "none", "No pixel scatters; lights may still make ghosts"),
     (Some(Name::Cie), "cie", "An eye by CIE 146, its glare from 0.1° on, by age and pigment"),
     (Some(Name::Cie135), "cie135", "An eye by CIE 135/1, all of its light, by age and pigment"),
@@ -22,6 +25,7 @@ const FUNCTIONS: [(Option<Name>, &str, &str); 11] = [
     (Some(Name::Table), "table", "Radii and values from a CSV file, on the picture's plane"),
     (Some(Name::Camera), "camera", "A lens: a core and a tail, 3 % of the light, on the picture's plane"),
     (Some(Name::Kernel), "kernel", "A picture of a point's light, pixel by pixel"),
+    (Some(Name::Starburst), "starburst", "The spikes of an iris, by what its blades diffract"),
 ];
 
 const LUMINANCES: [(Luminance, &str, &str); 3] = [
@@ -51,6 +55,46 @@ const WIDTH: Number = Number {
     about: "The Gaussian's standard deviation.",
     unit: "of the look's unit",
     range: 1e-4..=10.0,
+    logarithmic: true,
+};
+
+const FSTOP: Number = Number {
+    name: "F-number",
+    about: "The f-number: the smaller the opening, the larger what it diffracts.",
+    unit: "f-number",
+    range: FSTOPS[0]..=FSTOPS[1],
+    logarithmic: true,
+};
+
+const BLADES_OF_IRIS: Number = Number {
+    name: "Blades",
+    about: "Blades of the iris, 3 to 16, or 0 for a round one: as many spikes where they are even, else twice as many.",
+    unit: "blades",
+    range: 0.0..=16.0,
+    logarithmic: false,
+};
+
+const ROTATION: Number = Number {
+    name: "Rotation",
+    about: "How far the iris is turned against the clock, from a corner on the right.",
+    unit: "degrees",
+    range: -180.0..=180.0,
+    logarithmic: false,
+};
+
+const ROUNDNESS: Number = Number {
+    name: "Roundness",
+    about: "How far the blades are bent: 0 straight, 1 a circle. Bent ones spread their spikes.",
+    unit: "of the circle's curvature",
+    range: 0.0..=1.0,
+    logarithmic: false,
+};
+
+const SENSOR: Number = Number {
+    name: "Sensor",
+    about: "The width of the sensor, which the photo's width spans.",
+    unit: "millimetres",
+    range: SENSORS[0]..=SENSORS[1],
     logarithmic: true,
 };
 
@@ -126,8 +170,32 @@ pub fn parameters(ui: &mut Ui, document: &mut Document, now: &mut Parameters, op
         }
         Name::Table => file(ui, document, now.table.as_deref(), Purpose::OpenTable),
         Name::Kernel => file(ui, document, now.kernel.as_deref(), Purpose::OpenKernel),
+        Name::Starburst => iris(ui, now, opened),
         Name::Camera => {}
     }
+}
+
+/// The iris of a starburst.
+fn iris(ui: &mut Ui, now: &mut Parameters, opened: &Parameters) {
+    let open = now.fstop.unwrap_or(FSTOPS[1]);
+    number(ui, &FSTOP, &mut now.fstop, open, opened.fstop.or(Some(open)));
+    let usual = f64::from(USUAL_BLADES);
+    let before = now.blades.unwrap_or(USUAL_BLADES);
+    let mut blades = now.blades.map(f64::from);
+    number(ui, &BLADES_OF_IRIS, &mut blades, usual, opened.blades.map(f64::from));
+    now.blades = blades.map(|blades| match blades.round() as u32 {
+        // There is nothing between a round one and a triangle.
+        1 | 2 if before == 0 => BLADES[0],
+        1 | 2 => 0,
+        blades => blades,
+    });
+    if now.blades == Some(0) {
+        (now.rotation, now.roundness) = (None, None);
+    } else {
+        number(ui, &ROTATION, &mut now.rotation, 0.0, opened.rotation);
+        number(ui, &ROUNDNESS, &mut now.roundness, 0.0, opened.roundness);
+    }
+    number(ui, &SENSOR, &mut now.sensor, USUAL_SENSOR, opened.sensor);
 }
 
 /// A number that is `open` where nothing says it.

@@ -6,7 +6,7 @@ use super::psf;
 use crate::choices::{Border, Projection};
 use crate::job::Ledger;
 use crate::look::Veil;
-use crate::psf::{Parameters, Unit};
+use crate::psf::{Name, Parameters, Unit};
 use crate::scene::VeilSection;
 use crate::viewer::control::{Number, brief, choice, flag, hint};
 use crate::viewer::document::Document;
@@ -52,7 +52,7 @@ pub fn show(ui: &mut Ui, document: &mut Document, stage: &Stage) {
     if let Some(fault) = fault {
         ui.label(RichText::new(in_words(fault)).color(ui.visuals().error_fg_color));
     }
-    figures(ui, &document.look, stage);
+    figures(ui, document, stage);
 }
 
 fn settings(ui: &mut Ui, document: &mut Document, veil: &Veil) {
@@ -69,7 +69,10 @@ fn settings(ui: &mut Ui, document: &mut Document, veil: &Veil) {
     };
     let opened = opened.unwrap_or(none);
     psf::parameters(ui, document, &mut now.parameters, &opened.parameters);
-    let own = (veil.psf().energy(), "the function's own share");
+    let own = match before.parameters.psf {
+        Name::Starburst => (0.0, "none besides"),
+        _ => (veil.psf().energy(), "the function's own share"),
+    };
     SCATTER.optional(ui, &mut now.parameters.scatter, own, opened.parameters.scatter);
     if veil.is_in_degrees() {
         field_of_view(ui, document);
@@ -131,7 +134,8 @@ fn in_words(fault: &str) -> &str {
 }
 
 /// What comes of it.
-fn figures(ui: &mut Ui, look: &Look, stage: &Stage) {
+fn figures(ui: &mut Ui, document: &Document, stage: &Stage) {
+    let look = &document.look;
     let Some(veil) = &look.veil else { return };
     let known = stage.veiling().figures();
     Grid::new("veil").num_columns(2).striped(true).show(ui, |ui| {
@@ -140,12 +144,13 @@ fn figures(ui: &mut Ui, look: &Look, stage: &Stage) {
             ui.label(value);
             ui.end_row();
         };
-        let scattered = veil.psf().energies().map(|share| look.strength * share);
+        let scattered = veil.energies(&document.frame).map(|share| look.strength * share);
         row("scattered", "The share of each pixel's light: strength times f", of_three(scattered));
         let per = match veil.psf().unit() {
             Unit::Degrees => "/sr",
             Unit::Look => "/unit²",
             Unit::Pixels => "/pixel",
+            Unit::Micrometres => "/µm²",
         };
         row(
             "k(0)",

@@ -290,6 +290,11 @@ fn functions_are_shown_drawn_and_written() {
             place.vglare(&["psf", name, "--plot", "psf.svg", "--csv", "psf.csv", "--force"]).succeeded().stdout();
         assert!(said.contains(name) && said.contains("Gaussians"), "{said}");
     }
+    let line = "psf starburst --fstop 16 --plot star.svg --csv star.csv";
+    let said = place.vglare(&words(line)).succeeded().stdout();
+    assert!(said.contains("µm") && said.contains("none: a picture is not round"), "{said}");
+    place.vglare(&["psf", "starburst"]).failed(2, &["--fstop", "needs it"]);
+    place.vglare(&["psf", "starburst", "--fstop", "16", "--blades", "2"]).failed(2, &["--blades", "and not 2"]);
     place.vglare(&["psf", "cie", "--age", "60", "--plot", "psf.png", "--csv", "cie.csv"]).succeeded();
     let picture = photo::read(&place.path("psf.png")).unwrap();
     assert!(picture.width() > picture.height() && picture.pixels.iter().any(|pixel| pixel[0] < 0.5));
@@ -308,6 +313,41 @@ fn functions_are_shown_drawn_and_written() {
     assert_eq!(svg.matches("<svg").count(), 5);
     place.vglare(&["psf", "cie", "--plot", "psf.pdf"]).failed(1, &["psf.pdf", ".svg"]);
     place.vglare(&["psf", "cie", "--csv", "cie.csv"]).failed(1, &["cie.csv"]);
+}
+
+/// One lamp: its spikes as the iris is turned, upwards where its blades are level, and all of the light in the ledger.
+#[test]
+fn an_iris_throws_spikes_from_a_lamp() {
+    let place = Workplace::new();
+    let mut photo = point(80, 50, 1e4);
+    photo.pixels[50 * WIDTH + 80] = [1e4, 1e4, 1e4, 1.0];
+    place.write("in.exr", &photo);
+    place.text(
+        "look.toml",
+        "version = 2\npreset = \"none\"\n[veil]\npsf = \"starburst\"\nfstop = 16\nblades = 4\nsensor = 3\n",
+    );
+    let line = "apply in.exr -o out.exr --glare veil.exr --scene look.toml --rotation 65 --strict --force --report report.json";
+    place.vglare(&words(line)).succeeded();
+    let veil = photo::read(&place.path("veil.exr")).unwrap();
+    let at = |angle: f64| {
+        let [x, y] = [40.0 * angle.to_radians().cos(), 40.0 * angle.to_radians().sin()];
+        // Row 0 is at the top.
+        veil.pixels[(50.0 - y).round() as usize * WIDTH + (80.0 + x).round() as usize]
+    };
+    // A corner at 65° has blades beside it whose spikes are at 20 and 110.
+    let [on, off] = [20.0, -20.0].map(at);
+    assert!(on[1] > 20.0 * off[1] && at(110.0)[1] > 20.0 * off[1], "{on:?} and {off:?}");
+    assert!(on[0] > on[1] && on[1] > on[2], "{on:?}");
+    let veil = &place.read_json("report.json")["veil"];
+    assert_eq!((&veil["psf"], &veil["fstop"], &veil["rotation"]), (&"starburst".into(), &16.0.into(), &65.0.into()));
+    for channel in 0..3 {
+        let part = |name: &str| veil["ledger"][name][channel].as_f64().unwrap() / 1e4;
+        let scattered = veil["scattered"][channel].as_f64().unwrap();
+        assert!((part("kept") - (1.0 - scattered)).abs() < 1e-6 && part("lost") > 0.0, "{veil}");
+        assert!((part("kept") + part("inside") + part("lost") - 1.0).abs() < 1e-6, "{veil}");
+    }
+    // So strong it would scatter more than there is.
+    place.vglare(&words("apply in.exr -o no.exr --scene look.toml --strength 9")).failed(2, &["strength of 9"]);
 }
 
 #[test]

@@ -55,6 +55,7 @@ fn it_says_by_what_it_is_summed() {
         ("cie --fov 40", &["sphere", "sum"]),
         ("kernel --kernel star.exr --scatter 0.1", &["transform", "sum"]),
         ("table --table ring.csv --scatter 0.1", &["transform", "sum"]),
+        ("starburst --fstop 16", &["transform", "sum"]),
     ] {
         for (said, veil) in [place.told(veil), place.planned(veil)] {
             let by = veil["summed_by"].as_str().unwrap();
@@ -104,6 +105,7 @@ fn a_size_that_changes_nothing_is_told() {
     for (veil, words) in [
         ("kernel --kernel star.exr --scatter 0.1", Some("kernel, is a picture")),
         ("cie --fov 40", Some("cie, is in degrees")),
+        ("starburst --fstop 16", Some("starburst, is as large as the f-number")),
         ("gaussian --width 0.1 --scatter 0.1", None),
     ] {
         let (plain, sized) = (place.told(veil), place.told(&format!("{veil} --size 2")));

@@ -304,12 +304,25 @@ fn every_control_of_a_veil_goes_back() {
         ..widths([0.05, 0.4])
     };
     let plain = Parameters { weights: Some(vec![1.0; 2]), tints: Some(vec![[1.0; 3]; 2]), ..widths([0.02, 0.2]) };
-    let cases: [(Parameters, Parameters, &[&str]); 5] = [
+    let iris = |fstop, blades, rotation, roundness, sensor| Parameters {
+        fstop: Some(fstop),
+        blades: Some(blades),
+        rotation: Some(rotation),
+        roundness: Some(roundness),
+        sensor: Some(sensor),
+        ..of(Name::Starburst)
+    };
+    let cases: [(Parameters, Parameters, &[&str]); 6] = [
         (of(Name::Cie), eye, &["Age", "Pigment", "Scatter", "Field", "Veil error", "Projection", "Keep light", "Unit"]),
         (day, dusk, &["Luminance", "Scatter", "Field"]),
         (wide(0.1), wide(0.5), &["Width", "Border"]),
         (plain, tinted, &["width 1", "width 2", "weight 1", "weight 2", "hue 1", "hue 2"]),
         (tail([1e-4, 1e-3, 2.5], None), tail([2e-4, 2e-3, 3.0], Some(2.0)), &["A", "B", "Exponent", "End"]),
+        (
+            iris(16.0, 6, 0.0, 0.0, 36.0),
+            Parameters { scatter: Some(0.02), ..iris(8.0, 9, 15.0, 0.3, 23.5) },
+            &["F-number", "Blades", "Rotation", "Roundness", "Sensor"],
+        ),
     ];
     let mut session = Session::of_size([480, 2600]);
     for (opened, set, names) in cases {
