@@ -16,7 +16,7 @@ pub use accuracy::{AccuracyArgs, CalibrationArgs};
 pub use backend::BackendChoice;
 pub use command_line::command_line;
 pub use find::FindArgs;
-pub use optics::OpticsArgs;
+pub use optics::{ApertureArgs, OpticsArgs};
 pub use psf::PsfArgs;
 pub use reading::ReadArgs;
 pub use scene::SceneArgs;

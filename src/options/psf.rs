@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
+use crate::options::ApertureArgs;
 use crate::options::numbers::{colour, finite};
-use crate::psf::{Fault, Luminance, Parameters};
+use crate::psf::{Fault, Luminance, Name, Parameters};
 use crate::scene::absolute;
 use crate::{Error, Result};
 
@@ -50,14 +51,6 @@ pub struct PsfArgs {
     #[arg(long, value_name = "FILE")]
     kernel: Option<PathBuf>,
 
-    /// Of starburst: the f-number, 0.5 to 64
-    #[arg(long, value_name = "N", allow_hyphen_values = true, value_parser = finite)]
-    fstop: Option<f64>,
-
-    /// Of starburst: blades of the iris, 3 to 16, or 0 for a round one [default: 6]
-    #[arg(long, value_name = "COUNT")]
-    blades: Option<u32>,
-
     /// Of starburst: degrees that the iris is turned by against the clock, from a corner on the right [default: 0]
     #[arg(long, value_name = "DEGREES", allow_hyphen_values = true, value_parser = finite)]
     rotation: Option<f64>,
@@ -65,10 +58,6 @@ pub struct PsfArgs {
     /// Of starburst: how far its blades are bent, from 0, straight, to 1, a circle [default: 0]
     #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = finite)]
     roundness: Option<f64>,
-
-    /// Of starburst: the width of the sensor, which the photo's width spans, in millimetres [default: 36]
-    #[arg(long, value_name = "MM", allow_hyphen_values = true, value_parser = finite)]
-    sensor: Option<f64>,
 
     /// The share of the light that is scattered, above 0 and at most 1 [default: the function's own]; of starburst, what the lens
     /// scatters besides [default: 0]
@@ -91,9 +80,15 @@ fn tail(text: &str) -> std::result::Result<Tail, String> {
 
 impl PsfArgs {
     /// What is given wins over what was said before.
-    pub fn over(&self, before: Parameters) -> Parameters {
+    pub fn over(&self, before: Parameters, aperture: &ApertureArgs) -> Parameters {
         let Self { age, pigment, luminance, width, widths, weights, tints, abg, table, kernel, .. } = self.clone();
-        let Self { fstop, blades, rotation, roundness, sensor, scatter, .. } = *self;
+        let Self { rotation, roundness, scatter, .. } = *self;
+        // Those of other functions may be a lens's.
+        let ApertureArgs { fstop, blades, sensor } = match before.psf {
+            Name::Starburst => *aperture,
+            _ => ApertureArgs::default(),
+        };
+        let sensor = sensor.map(|[width, _]| width);
         let (tail, end) = abg.map_or((None, None), |Tail(tail, end)| (Some(tail), end));
         let file = |given: Option<PathBuf>, before| given.map(|path| absolute(&path)).or(before);
         Parameters {
@@ -123,10 +118,9 @@ impl PsfArgs {
     /// Whether nothing is given.
     pub fn is_empty(&self) -> bool {
         let Self { age, pigment, luminance, width, widths, weights, tints, abg, table, kernel, .. } = self;
-        let Self { fstop, blades, rotation, roundness, sensor, scatter, .. } = self;
-        [age, pigment, width, fstop, rotation, roundness, sensor, scatter].iter().all(|number| number.is_none())
+        let Self { rotation, roundness, scatter, .. } = self;
+        [age, pigment, width, rotation, roundness, scatter].iter().all(|number| number.is_none())
             && luminance.is_none()
-            && blades.is_none()
             && [widths, weights].iter().all(|list| list.is_none())
             && tints.is_none()
             && abg.is_none()

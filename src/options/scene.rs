@@ -56,7 +56,7 @@ pub struct SceneArgs {
 
     /// How the lens is set.
     #[command(flatten)]
-    optics: OpticsArgs,
+    pub optics: OpticsArgs,
 }
 
 impl SceneArgs {

@@ -6,9 +6,9 @@ use clap::ValueEnum;
 use clap::builder::PossibleValue;
 
 use crate::choices::{Border, Projection};
-use crate::look::{Look, Veil};
-use crate::options::PsfArgs;
+use crate::look::{Look, LookLens, Veil};
 use crate::options::psf::told;
+use crate::options::{ApertureArgs, PsfArgs};
 use crate::psf::{Name, Parameters};
 use crate::scene::VeilSection;
 use crate::{Error, Result};
@@ -63,11 +63,25 @@ impl ValueEnum for VeilName {
 }
 
 impl VeilArgs {
-    /// What is given wins over what was set before; so does a tolerance, which is an option of all glare.
+    /// What is given wins over what was set before; so does a tolerance, which is an option of all glare, and an opening, which a starburst
+    /// shares with the lens.
     ///
     /// # Errors
     /// [`Error::Usage`], which names the option.
-    pub fn over(&self, look: Look, tolerance: Option<f64>) -> Result<Look> {
+    pub fn over(&self, look: Look, tolerance: Option<f64>, aperture: &ApertureArgs) -> Result<Look> {
+        let look = self.veiled(look, tolerance, aperture)?;
+        let is_starburst = look.veil.as_ref().is_some_and(|veil| veil.section().parameters.psf == Name::Starburst);
+        if *aperture != ApertureArgs::default() && !is_starburst && !matches!(look.lens, LookLens::Optical(_)) {
+            return Err(Error::Usage(
+                "--fstop, --blades and --sensor are of a lens that is known by its surfaces, or of a starburst: name one by --lens (vglare lens \
+                 lists them), or give --veil starburst"
+                    .into(),
+            ));
+        }
+        Ok(look)
+    }
+
+    fn veiled(&self, look: Look, tolerance: Option<f64>, aperture: &ApertureArgs) -> Result<Look> {
         let before = look.veil.as_ref().map(Veil::section);
         let adds = look.veil.as_ref().is_some_and(|veil| veil.adds);
         let section = match (self.veil, before) {
@@ -95,7 +109,7 @@ impl VeilArgs {
             ));
         };
         let section = VeilSection {
-            parameters: self.psf.over(parameters),
+            parameters: self.psf.over(parameters, aperture),
             fov: None,
             projection: self.projection.or(projection),
             border: self.border.or(border),

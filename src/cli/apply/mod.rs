@@ -119,7 +119,11 @@ impl Args {
     /// # Errors
     /// Those of [`SceneArgs::look`].
     pub fn look(&self) -> Result<Look> {
-        let look = self.look.over(self.veil.over(self.scene.look(&self.find)?, self.accuracy.tolerance())?);
+        let look = self.look.over(self.veil.over(
+            self.scene.look(&self.find)?,
+            self.accuracy.tolerance(),
+            &self.scene.optics.aperture,
+        )?);
         let (find, accuracy) = (self.find.over(look.find), self.accuracy.over(look.accuracy));
         self.scene.unit.check(&look)?;
         Ok(Look { find, accuracy, ..look })

@@ -80,7 +80,8 @@ fn size(text: &str) -> Result<[u32; 2], String> {
 /// Where the photo or a file of the scene cannot be read, where there is no plan, or standard output cannot be written.
 /// No OpenGL is no error.
 pub fn run(args: &Args) -> Result<()> {
-    let mut look = args.veil.over(args.scene.look(&args.find)?, args.accuracy.tolerance())?;
+    let mut look =
+        args.veil.over(args.scene.look(&args.find)?, args.accuracy.tolerance(), &args.scene.optics.aperture)?;
     args.scene.unit.check(&look)?;
     look.find = args.find.over(look.find);
     look.accuracy = args.accuracy.over(look.accuracy);

@@ -5,9 +5,9 @@ mod draw;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use crate::options::PsfArgs;
 use crate::options::numbers::positive;
 use crate::options::psf::{told, wrong};
+use crate::options::{ApertureArgs, PsfArgs};
 use crate::psf::{Mixture, Name, Parameters, Profile, Psf, Row, Unit};
 use crate::scene::VeilFunction;
 use crate::terminal::stdout;
@@ -30,6 +30,9 @@ pub struct Args {
 
     #[command(flatten)]
     psf: PsfArgs,
+
+    #[command(flatten)]
+    aperture: ApertureArgs,
 
     /// The angles or radii [default: 0.1 to 100 degrees, from 0.01 for cie135 and spencer; 0.001 to 2 of the look's unit; 1 to 20000 micrometres]
     #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true, value_parser = range)]
@@ -96,7 +99,7 @@ pub fn run(args: &Args) -> Result<()> {
         .collect();
     target::spare(&outputs, &[])?;
     outputs.iter().try_for_each(|(_, path)| target::check(path, args.force))?;
-    let parameters = args.psf.over(Parameters::new(args.name));
+    let parameters = args.psf.over(Parameters::new(args.name), &args.aperture);
     let psf = told(VeilFunction::new(&parameters))?.psf().clone();
     let range = args.range.map_or_else(|| usual(&psf), |Range(range)| range);
     let mixture =

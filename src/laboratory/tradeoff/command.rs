@@ -87,7 +87,7 @@ pub fn run(args: &Args) -> Result<()> {
     let progress = Progress::start(args.quiet);
     let inputs: Vec<_> = std::iter::once(args.photo.clone()).chain(args.scene.files()).collect();
     tradeoff::spare(&args.output, &inputs)?;
-    let mut look = args.veil.over(args.scene.look(&args.find)?, None)?;
+    let mut look = args.veil.over(args.scene.look(&args.find)?, None, &args.scene.optics.aperture)?;
     args.scene.unit.check(&look)?;
     look.find = args.find.over(look.find);
     progress.say("reading the photo");
