@@ -11,6 +11,7 @@ mod outputs;
 mod panics;
 mod plan;
 mod preset_veils;
+mod real_lens;
 mod recover;
 mod refusals;
 mod rex;

@@ -10,10 +10,10 @@ use crate::cli::lights::FirefliesJson;
 use crate::cli::plan::CostModelReport;
 use crate::gpu::{Info, PassTime};
 use crate::job::{Computed, Done, Veiled};
-use crate::look::{Gathered, Look};
+use crate::look::{Gathered, Look, LookLens};
 use crate::photo::{BadKind, Facts};
 use crate::plan::Plan;
-use crate::scene::{Goal, Light, Recover, Recovery};
+use crate::scene::{Goal, Light, OpticsSection, Recover, Recovery};
 
 /// As JSON, one object.
 #[derive(Serialize)]
@@ -99,6 +99,8 @@ struct FirstBad {
 #[derive(Serialize)]
 struct SceneReport<'a> {
     lens: Option<&'a str>,
+    /// How a lens is set that is known by its surfaces.
+    optics: Option<&'a OpticsSection>,
     axis: [f64; 2],
     lights_by: Option<LightBy>,
     threshold: Option<f64>,
@@ -135,7 +137,7 @@ impl<'a> Report<'a> {
         // What a look has new is to be told, too.
         let &Look {
             description: _,
-            lens: _,
+            ref lens,
             unit,
             fov: _,
             axis,
@@ -156,7 +158,7 @@ impl<'a> Report<'a> {
             input: photo_report(job),
             output: paths.output.as_ref().map(|path| path.display().to_string()),
             glare: paths.glare.as_ref().map(|path| path.display().to_string()),
-            scene: scene_report(&work.scene, axis),
+            scene: scene_report(&work.scene, lens, axis),
             unit: UnitReport { name: unit, pixels: work.frame.pixel_size().recip() },
             strength,
             size,
@@ -215,10 +217,11 @@ pub fn kind_name(kind: BadKind) -> &'static str {
     }
 }
 
-fn scene_report(scene: &Gathered, axis: DVec2) -> SceneReport<'_> {
+fn scene_report<'a>(scene: &'a Gathered, lens: &'a LookLens, axis: DVec2) -> SceneReport<'a> {
     let found = scene.found.as_ref();
     SceneReport {
         lens: scene.lens.as_ref().map(|lens| lens.name.as_str()),
+        optics: if let LookLens::Optical(optical) = lens { Some(optical.section()) } else { None },
         axis: axis.to_array(),
         lights_by: found.map(|found| found.by),
         threshold: found.map(|found| found.threshold),

@@ -10,7 +10,7 @@ use crate::choices::{Border, LengthUnit, Processor};
 use crate::cli::found;
 use crate::cli::plan::text;
 use crate::job::{Computed, Done, VeilSeen, Veiled};
-use crate::look::{Gathered, Look, LookLights};
+use crate::look::{Gathered, Look, LookLens, LookLights};
 use crate::photo::Facts;
 use crate::scene::Found;
 use crate::terminal::{stderr, stdout};
@@ -115,7 +115,7 @@ fn about_scene(out: &mut dyn Write, scene: &Gathered, look: &Look) -> io::Result
     if let Some(images) = &scene.images {
         writeln!(out, "sources  {} pixels", images.raster().pixels())?;
         if let Some(lens) = &scene.lens {
-            writeln!(out, "lens     {}: {} ghosts of each pixel", lens.name, images.all().len())?;
+            writeln!(out, "lens     {}{}: {} ghosts of each pixel", lens.name, stop(look), images.all().len())?;
         }
         return match scene.ghosts.len() {
             0 => Ok(()),
@@ -123,7 +123,7 @@ fn about_scene(out: &mut dyn Write, scene: &Gathered, look: &Look) -> io::Result
         };
     }
     match &scene.lens {
-        Some(lens) => writeln!(out, "lens     {}: {} ghosts in all", lens.name, scene.ghosts.len()),
+        Some(lens) => writeln!(out, "lens     {}{}: {} ghosts in all", lens.name, stop(look), scene.ghosts.len()),
         None => writeln!(out, "ghosts   {}", scene.ghosts.len()),
     }
 }
@@ -225,4 +225,12 @@ fn about_times(out: &mut dyn Write, job: &Job<'_, Done<'_>>) -> io::Result<()> {
         writeln!(out, "stage    {stage:<13}{ms:>9.2} ms")?;
     }
     Ok(())
+}
+
+/// How far a lens that is known by its surfaces is open.
+fn stop(look: &Look) -> String {
+    match &look.lens {
+        LookLens::Optical(optical) => format!(", f/{:.1}", optical.f_number()),
+        _ => String::new(),
+    }
 }

@@ -75,7 +75,8 @@ struct Made {
     veil: Option<LensVeil>,
     /// The name for people.
     name: String,
-    /// The f-number with the stop wide open.
+    /// The f-number, as it is set and with the stop wide open.
+    f_number: f64,
     widest: f64,
 }
 
@@ -152,6 +153,7 @@ impl Optical {
             // A file says what reflects, and nothing of what scatters.
             veil: section.lens.is_some().then(|| veil(&prescription.coating)),
             prescription,
+            f_number: system.first_order().f_number,
             widest: system.first_order().widest_f_number,
             ghosts,
             name,
@@ -183,6 +185,11 @@ impl Optical {
     /// The table of its ghosts, in the unit of the picture that it was fitted to.
     pub fn lens(&self) -> &Arc<Lens> {
         &self.lens
+    }
+
+    /// The f-number that it is set to.
+    pub fn f_number(&self) -> f64 {
+        self.made.f_number
     }
 
     /// The f-number with the stop wide open.
