@@ -262,7 +262,7 @@ impl Error {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Frame { error, .. } | Self::Frames { first: error, .. } => error.exit_code(),
-            Self::UnknownPreset { .. } | Self::Usage(_) => 2,
+            Self::UnknownPreset { .. } | Self::UnknownLens { .. } | Self::Usage(_) => 2,
             Self::ToleranceBelowFloor { .. }
             | Self::BudgetTooSmall { .. }
             | Self::ToleranceMissed { .. }

@@ -7,6 +7,7 @@
 //! | [`rex`] | the research prototype's experiments, as figures and numbers |
 //! | [`tradeoff`] | a photo and its ghosts → accuracy against time, measured here |
 //! | [`psf`] | a point-spread function → its transform and its mixture of Gaussians |
+//! | [`lens`] | a real lens → its surfaces, its ghosts, and drawings of both |
 //! | [`harmonics`] | a photo → its spherical harmonic coefficients |
 //! | [`mod@bench`] | what each pass costs here, as ratios |
 //! | [`calibrate`] | the cost model of plans, fitted to this machine |
@@ -15,6 +16,7 @@ pub mod bench;
 pub mod calibrate;
 pub mod chart;
 pub mod harmonics;
+pub mod lens;
 mod page;
 pub mod psf;
 pub mod rex;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::coating::Coating;
 use super::error::{OpticsError, Result};
+use super::first_order::FirstOrder;
 use super::glass::Glass;
 
 /// The most surfaces that a lens may have. Zoom lenses have some fifty.
@@ -132,6 +133,14 @@ impl Iris {
     pub fn inner(&self) -> f64 {
         let straight = self.blades.map_or(1.0, |blades| (std::f64::consts::PI / f64::from(blades.max(3))).cos());
         straight + (1.0 - straight) * self.roundness.clamp(0.0, 1.0)
+    }
+
+    /// The straight sides that the opening shows in a lens as it is set: none where the blades are round, or where the lens
+    /// is within a third of a stop of wide open, for then they are all but out of the way.
+    pub fn sides(&self, lens: &FirstOrder) -> Option<u32> {
+        let engaged = lens.f_number > 1.12 * lens.widest_f_number;
+        // Rounded blades make an opening that is all but a circle.
+        self.blades.filter(|_| engaged && self.roundness < 0.5)
     }
 }
 
@@ -296,6 +305,7 @@ fn positive_fault(what: &str, value: Option<f64>, most: f64) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::super::tests::singlet;
+    use super::super::{Setup, System};
     use super::*;
 
     /// What `check` says of the singlet after a change.
@@ -351,6 +361,18 @@ mod tests {
         let iris = |blades, roundness| Iris { blades, rotation: 0.0, roundness };
         assert!((iris(Some(6), 0.0).inner() - 0.75_f64.sqrt()).abs() < 1e-15);
         assert_eq!((iris(None, 0.0).inner(), iris(Some(5), 1.0).inner()), (1.0, 1.0));
+    }
+
+    #[test]
+    fn blades_have_sides_once_they_are_a_third_of_a_stop_in() {
+        let lens = Prescription { iris: Iris { blades: Some(6), ..Iris::default() }, ..singlet() };
+        let first = |scale: f64| {
+            let widest = System::new(&lens, &Setup::default()).unwrap().first_order().f_number;
+            *System::new(&lens, &Setup { fstop: Some(widest * scale), ..Setup::default() }).unwrap().first_order()
+        };
+        assert_eq!([1.0, 1.11, 1.13, 4.0].map(|scale| lens.iris.sides(&first(scale))), [None, None, Some(6), Some(6)]);
+        assert_eq!(Iris { roundness: 0.8, ..lens.iris }.sides(&first(4.0)), None);
+        assert_eq!(Iris::default().sides(&first(4.0)), None);
     }
 
     #[test]

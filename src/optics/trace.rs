@@ -85,8 +85,29 @@ impl<'a> Tracer<'a> {
         self.trace_steps(&path.steps(), path, direction, pupil)
     }
 
+    /// The way of such a ray: where it meets each surface, in the light's order, and the sensor; in mm, z from the first
+    /// vertex. None where it is lost.
+    pub fn way(&self, path: &Path, direction: DVec3, pupil: DVec2) -> Option<Vec<DVec3>> {
+        let mut points = Vec::new();
+        let hit = self.follow(&path.steps(), path, direction, pupil, |point| points.push(point))?;
+        points.push(hit.position.extend(self.system.sensor_z()));
+        Some(points)
+    }
+
     /// [`Tracer::trace`] by the path's own steps, for many rays.
     pub(super) fn trace_steps(&self, steps: &[Step], path: &Path, direction: DVec3, pupil: DVec2) -> Option<Hit> {
+        self.follow(steps, path, direction, pupil, |_| {})
+    }
+
+    /// [`Tracer::trace_steps`], telling where the ray meets each surface.
+    fn follow(
+        &self,
+        steps: &[Step],
+        path: &Path,
+        direction: DVec3,
+        pupil: DVec2,
+        mut tell: impl FnMut(DVec3),
+    ) -> Option<Hit> {
         let direction = direction.try_normalize().filter(|direction| direction.z > 0.0)?;
         if path.surfaces() != self.system.surfaces().len() {
             return None;
@@ -97,6 +118,7 @@ impl<'a> Tracer<'a> {
         let mut light = Light { ray: Ray { origin, direction }, fields };
         for step in steps {
             light = self.step(step, &light)?;
+            tell(light.ray.origin);
         }
         let Ray { origin, direction } = light.ray;
         let position = (origin + direction * ((self.system.sensor_z() - origin.z) / direction.z)).truncate();
@@ -276,6 +298,30 @@ mod tests {
             println!("{} ghosts of {}: at most {worst:.1e} off", found.ghosts.len(), system.name());
             assert!(worst < 1e-5, "{}: {worst}", system.name());
         }
+    }
+
+    #[test]
+    fn the_way_of_a_ray_is_by_its_paths_surfaces_to_where_it_is_traced() {
+        let system = system(&double_gauss());
+        let tracer = Tracer::new(&system, LINE_D).unwrap();
+        let (from, pupil) = (direction(3.0), DVec2::new(2.0, 1.0));
+        for (reflections, numbers) in [
+            (vec![], (1..=11).collect()),
+            (vec![3, 1], [1, 2, 3, 2, 1].into_iter().chain(2..=11).collect::<Vec<usize>>()),
+        ] {
+            let path = Path::new(&system, &reflections).unwrap();
+            let way = tracer.way(&path, from, pupil).unwrap();
+            let (sensor, points) = way.split_last().unwrap();
+            assert_eq!(points.len(), numbers.len());
+            for (point, number) in points.iter().zip(numbers) {
+                let OpticalSurface { z, curvature, .. } = system.surfaces()[number - 1];
+                let off = curvature * (point - DVec3::new(0.0, 0.0, z)).length_squared() - 2.0 * (point.z - z);
+                assert!(off.abs() < 1e-12, "surface {number}: {point}");
+            }
+            assert_eq!(sensor.truncate(), tracer.trace(&path, from, pupil).unwrap().position);
+            assert_eq!(sensor.z, system.sensor_z());
+        }
+        assert_eq!(tracer.way(&Path::direct(&system), from, DVec2::new(90.0, 0.0)), None);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use clap::{Parser, Subcommand};
 
 use vglare::cli::{apply, info, lights, plan, presets};
 #[cfg(feature = "laboratory")]
-use vglare::laboratory::{bench, calibrate, harmonics, psf, rex, tradeoff};
+use vglare::laboratory::{bench, calibrate, harmonics, lens, psf, rex, tradeoff};
 #[cfg(feature = "window")]
 use vglare::viewer::command as view;
 use vglare::{Result, panics, terminal};
@@ -44,6 +44,8 @@ enum Command {
     Plan(Box<plan::Args>),
     Lights(lights::Args),
     Presets(presets::Args),
+    #[cfg(feature = "laboratory")]
+    Lens(Box<lens::Args>),
     #[cfg(feature = "laboratory")]
     Psf(Box<psf::Args>),
     #[cfg(feature = "laboratory")]
@@ -110,6 +112,8 @@ fn command(command: Command) -> Result<()> {
         Command::Plan(args) => plan::run(&args),
         Command::Lights(args) => lights::run(&args),
         Command::Presets(args) => presets::run(&args),
+        #[cfg(feature = "laboratory")]
+        Command::Lens(args) => lens::run(&args),
         #[cfg(feature = "laboratory")]
         Command::Psf(args) => psf::run(&args),
         #[cfg(feature = "laboratory")]

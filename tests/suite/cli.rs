@@ -5,6 +5,7 @@ mod calibrate;
 mod extremes;
 mod harmonics;
 mod interrupted;
+mod lens;
 mod lights;
 mod look;
 mod outputs;

@@ -1,16 +1,21 @@
-//! Charts: what is on them. `paint` draws them, `axis` places the numbers, `field` makes pictures of scalar fields.
+//! Charts: what is on them. `paint` draws them, `axis` places the numbers, `field` makes pictures of scalar fields; `sheet` is
+//! for drawings that have no axes.
 
 mod axis;
 mod field;
+mod kind;
 mod layout;
 mod line;
 mod paint;
+mod sheet;
 
 use image::RgbImage;
 
 pub use crate::false_colour::Map;
 pub use axis::Axis;
 pub use field::{Scalar, side_by_side};
+pub use kind::Kind;
+pub use sheet::{Anchor, Shape, Sheet, text_width};
 
 use crate::Result;
 

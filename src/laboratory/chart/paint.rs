@@ -32,7 +32,7 @@ const LABEL_FONT: f64 = 21.0;
 pub(super) const FONT: f64 = 19.0;
 
 /// `plotters` takes a font's box to be less high than it is.
-const BITMAP_DROP: i32 = 3 * FINE;
+pub(super) const BITMAP_DROP: i32 = 3 * FINE;
 
 const INK: Colour = [30, 30, 30];
 const GRID: Colour = [222, 222, 222];
@@ -80,11 +80,11 @@ pub(super) fn svg(chart: &Chart) -> Result<String> {
     Ok(text.replacen(&size([width, height]), &size(chart.size), 1))
 }
 
-fn failed(error: impl std::fmt::Display) -> Error {
+pub(super) fn failed(error: impl std::fmt::Display) -> Error {
     Error::Chart(error.to_string())
 }
 
-fn font(size: f64) -> Result<TextStyle<'static>> {
+pub(super) fn font(size: f64) -> Result<TextStyle<'static>> {
     const COLOUR: RGBColor = RGBColor(INK[0], INK[1], INK[2]);
     static REGISTERED: OnceLock<bool> = OnceLock::new();
     let register =
@@ -96,7 +96,7 @@ fn font(size: f64) -> Result<TextStyle<'static>> {
     }
 }
 
-fn rgb([red, green, blue]: Colour) -> RGBColor {
+pub(super) fn rgb([red, green, blue]: Colour) -> RGBColor {
     RGBColor(red, green, blue)
 }
 

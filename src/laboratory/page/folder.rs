@@ -34,9 +34,17 @@ pub(crate) fn open(folder: &Path, generator: &str, force: bool) -> Result<()> {
 /// # Errors
 /// [`Error::Write`] where it cannot be written, [`Error::Exists`].
 pub(crate) fn write_png(path: &Path, picture: &RgbImage, overwrite: bool) -> Result<()> {
+    target::write(path, &png_bytes(path, picture)?, overwrite)
+}
+
+/// What a picture's file is to hold.
+///
+/// # Errors
+/// [`Error::Write`] where there is no room for it.
+pub(crate) fn png_bytes(path: &Path, picture: &RgbImage) -> Result<Vec<u8>> {
     let mut png = Cursor::new(Vec::new());
     picture.write_to(&mut png, ImageFormat::Png).map_err(|error| Error::write(path, error))?;
-    target::write(path, png.get_ref(), overwrite)
+    Ok(png.into_inner())
 }
 
 type Reason = Box<dyn std::error::Error>;

@@ -6,29 +6,10 @@ use image::RgbImage;
 use image::imageops::replace;
 
 use super::{Shown, units};
-use crate::laboratory::chart::{Chart, Series, Stroke};
+use crate::laboratory::chart::{Chart, Kind, Series, Stroke};
 use crate::laboratory::page::write_png;
 use crate::psf::{Mode, Row};
-use crate::{Error, Result, target};
-
-/// What a drawing is written as.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    Svg,
-    Png,
-}
-
-/// By the name's extension.
-///
-/// # Errors
-/// [`Error::Write`] for another one.
-pub fn kind(path: &Path) -> Result<Kind> {
-    match path.extension().unwrap_or_default().to_string_lossy().to_lowercase().as_str() {
-        "svg" => Ok(Kind::Svg),
-        "png" => Ok(Kind::Png),
-        _ => Err(Error::write(path, "a drawing is written as .svg or .png")),
-    }
-}
+use crate::{Result, target};
 
 /// Pixels of each chart.
 const SIZE: [u32; 2] = [760, 500];
@@ -36,7 +17,7 @@ const SIZE: [u32; 2] = [760, 500];
 /// Draws a function and writes that.
 ///
 /// # Errors
-/// [`Error::Chart`] where it cannot be drawn, [`Error::Write`] and [`Error::Exists`] where it cannot be written.
+/// [`crate::Error::Chart`] where it cannot be drawn, [`crate::Error::Write`] and [`crate::Error::Exists`] where it cannot be written.
 pub fn write(path: &Path, kind: Kind, shown: &Shown, force: bool) -> Result<()> {
     let charts = charts(shown);
     match kind {

@@ -5,6 +5,7 @@ mod draw;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use crate::laboratory::chart::Kind;
 use crate::options::numbers::positive;
 use crate::options::psf::{told, wrong};
 use crate::options::{ApertureArgs, PsfArgs};
@@ -92,7 +93,7 @@ const ROWS: usize = 400;
 /// # Errors
 /// [`crate::Error::Usage`] where there is no such function; whatever keeps a file from being written.
 pub fn run(args: &Args) -> Result<()> {
-    let drawn = args.plot.as_deref().map(|path| draw::kind(path).map(|kind| (path, kind))).transpose()?;
+    let drawn = args.plot.as_deref().map(|path| Kind::of(path).map(|kind| (path, kind))).transpose()?;
     let outputs: Vec<(&str, &Path)> = [("--plot", &args.plot), ("--csv", &args.csv)]
         .into_iter()
         .filter_map(|(name, path)| Some((name, path.as_deref()?)))

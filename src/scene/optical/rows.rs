@@ -59,11 +59,12 @@ impl PartialEq for Opening {
 impl Opening {
     /// Of an iris in a lens, at a wavelength in nm.
     pub fn new(iris: &Blades, lens: &FirstOrder, wavelength: f64) -> Self {
-        // Within a third of a stop the blades are all but out of the way.
-        let engaged = lens.f_number > 1.12 * lens.widest_f_number;
-        // Rounded blades make an opening that is all but a circle.
-        let blades = iris.blades.filter(|_| engaged && iris.roundness < 0.5);
-        Self { blades, rotation: iris.rotation, wavelength: 1e-6 * wavelength, known: Mutex::default() }
+        Self {
+            blades: iris.sides(lens),
+            rotation: iris.rotation,
+            wavelength: 1e-6 * wavelength,
+            known: Mutex::default(),
+        }
     }
 
     /// The bell of a ghost whose radius on the sensor is so many mm, upside down or not, and its size; lengths are in units of so many mm.
