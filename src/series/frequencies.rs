@@ -177,12 +177,12 @@ impl Spline {
         for order in 1..ORDER {
             let scale = (order as f64).recip();
             let mut carried = 0.0;
-            for k in 0..order {
+            for (k, weight) in weights.iter_mut().enumerate().take(order) {
                 // Of a knot that is `k` before the place's own.
                 let right = (k + 1) as f64 - t;
                 let left = t + (order - 1 - k) as f64;
-                let part = weights[k] * scale;
-                weights[k] = carried + right * part;
+                let part = *weight * scale;
+                *weight = carried + right * part;
                 carried = left * part;
             }
             weights[order] = carried;

@@ -117,7 +117,7 @@ fn ghosts(report: &Report) -> String {
 fn sum(report: &Report) -> String {
     let whole = luminance(report.share);
     let shown: f64 = report.ghosts.iter().map(|ghost| luminance(ghost.share)).sum();
-    let tint = report.share.map(|part| percent(part)).join(" ");
+    let tint = report.share.map(percent).join(" ");
     let mut text = format!(
         "All {} ghosts together have {} % of the light of the image on the axis: {tint} % of its red, green and blue.",
         report.ghosts_in_all,

@@ -116,7 +116,7 @@ fn of_ghost(ghost: &GhostPath, opening: &Opening, unit: f64) -> Vec<LensGhost> {
     let mean =
         |values: [f64; 3]| -> f64 { values.iter().zip(ghost.share).map(|(value, share)| value * share / total).sum() };
     let (magnification, radius) = (mean(ghost.magnification), mean(ghost.radius_mm));
-    if !(total > 0.0) {
+    if total.is_nan() || total <= 0.0 {
         return Vec::new();
     }
     let shines = |c: &usize| ghost.share[*c] > 0.0;
