@@ -87,7 +87,7 @@ pub(super) fn measured(
 ///
 /// Its places are evenly spread in each octave, so that the bits of an angle say between which two of them it lies.
 fn looked_up(kernel: &Kernel, [from, to]: [f64; 2]) -> Result<Kernel> {
-    const PLACES: u32 = 11;
+    const PLACES: u32 = 12;
     const REST: u32 = f64::MANTISSA_DIGITS - 1 - PLACES;
     let first = (0.9 * from).to_bits() >> REST;
     let last = (1.2 * to).to_bits() >> REST;
