@@ -55,6 +55,7 @@ pub mod compare;
 pub mod error;
 #[cfg(any(feature = "laboratory", feature = "window"))]
 pub mod false_colour;
+mod fast_length;
 pub mod frame;
 pub mod gpu;
 pub mod job;

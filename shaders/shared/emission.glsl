@@ -1,15 +1,15 @@
 const float LARGEST = uintBitsToFloat(0x7f7fffffu);
 const float SMALLEST = uintBitsToFloat(0x00800000u); // of those that no device takes for nothing
 
-// Brightness of what a pixel gives, as scene::Emission has it: linear luminance, or the brightest channel under BRIGHTEST. Not
-// finite is none, a negative channel counts as 0 and so does a negative sum, and of straight colours alpha's share is given.
+// Brightness of what a pixel gives, as scene::Emission has it: linear luminance, or under BRIGHTEST the brightest channel of what
+// has any. Not finite is none, a negative channel counts as 0 and so does a negative sum, and of straight colours alpha's share is given.
 float emitted(vec4 pixel, vec3 weights) {
     if (any(isnan(pixel.rgb)) || any(isinf(pixel.rgb))) return 0.0;
     vec3 colour = max(pixel.rgb, 0.0);
-#ifdef BRIGHTEST
-    float sum = max(max(colour.r, colour.g), colour.b);
-#else
     precise float sum = weights.r * colour.r + weights.g * colour.g + weights.b * colour.b;
+#ifdef BRIGHTEST
+    sum = sum > 0.0 ? max(max(colour.r, colour.g), colour.b) : 0.0;
+#else
     sum = sum > 0.0 ? min(sum, LARGEST) : 0.0;
 #endif
 #ifdef STRAIGHT

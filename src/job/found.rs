@@ -7,9 +7,10 @@ use super::{Computer, Done, Planned, Stages, Step, Wanted, Watch, bright_light, 
 use crate::frame::Frame;
 use crate::look::{Gathered, Look, Search};
 use crate::photo::{self, BadPixels, Facts, Photo};
+use crate::plan::MANY_IMAGES;
 use crate::renderer::Settings;
 use crate::scene::{FindOptions, Recovered};
-use crate::{Result, limits, plan as planner};
+use crate::{Result, limits};
 
 /// What planning the ghosts of all pixels takes, and what each pixel adds to that, in bytes.
 const SOURCES: u64 = 160 << 20;
@@ -66,7 +67,7 @@ impl<'a> Found<'a> {
         let recovered = stages.time("recover", recovered);
         if look.strength != 0.0 && look.takes_photo() {
             // Their light, its moments, and the waves that a plan looks at.
-            let source = SOURCE + if look.lens_ghosts().len() >= planner::MANY_IMAGES { TRANSFORMED } else { 0 };
+            let source = SOURCE + if look.lens_ghosts().len() >= MANY_IMAGES { TRANSFORMED } else { 0 };
             limits::room(SOURCES + source * photo.pixels.len() as u64, "planning the ghosts of all pixels")?;
         }
         let scene = stages.time("lights", || look.gather_knowing(&photo, &recovered, &frame, search));

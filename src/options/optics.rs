@@ -56,12 +56,7 @@ impl OpticsArgs {
     /// # Errors
     /// Those of [`named_lens`].
     pub fn lens(&self, name: &Path) -> Result<NamedLens> {
-        let alone = Self { aperture: ApertureArgs::default(), ..self.clone() };
-        match named_lens(name, &alone.section())? {
-            NamedLens::Optical(_) => named_lens(name, &self.section()),
-            // An opening may be a starburst's.
-            table => Ok(table),
-        }
+        named_lens(name, &self.section())
     }
 
     /// That nothing is set where there is no such lens; an opening may be a starburst's.
@@ -69,7 +64,7 @@ impl OpticsArgs {
     /// # Errors
     /// [`Error::Usage`] where something is.
     pub fn without_lens(&self) -> Result<()> {
-        if (Self { aperture: ApertureArgs::default(), ..self.clone() }).section().sets() {
+        if self.section().sets_lens() {
             return Err(Error::Usage(
                 "--focus, --coating and --setting set a lens that is known by its surfaces: name one by --lens (vglare lens lists them)"
                     .into(),

@@ -15,10 +15,11 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use super::Transform;
-use super::amplitudes::{Rgb, turned};
+use super::amplitudes::Rgb;
 use super::decay::Decay;
 use super::effort::Effort;
 use super::series;
+use super::sums::turned;
 use super::terms::{self, Group};
 use super::weigh::{Weighed, peak_weight};
 use crate::Error;

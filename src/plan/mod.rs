@@ -27,6 +27,7 @@ mod search;
 mod series;
 mod slots;
 mod split;
+mod sums;
 mod terms;
 mod unit;
 mod weigh;

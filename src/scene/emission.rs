@@ -34,15 +34,15 @@ impl Emission {
 
     /// The brightness of what a pixel gives, 0 or more and finite: what light is told by, and weighted by.
     ///
-    /// Negative channels count as 0; a pixel with a channel that is not finite gives none.
+    /// Negative channels count as 0; a pixel with a channel that is not finite gives none, and neither does one whose luminance is not
+    /// above 0: what no eye sees, as the blue of ACES2065-1 alone, is no lamp.
     #[inline]
     pub fn brightness(&self, pixel: &[f32; 4]) -> f32 {
         match self.by {
             LightBy::Luminance => self.luminance(pixel),
             LightBy::Brightest => {
                 let [r, g, b, _] = *pixel;
-                let finite = r.is_finite() && g.is_finite() && b.is_finite();
-                let given = if finite { r.max(g).max(b).max(0.0) * self.share(pixel) } else { 0.0 };
+                let given = if self.seen(pixel) > 0.0 { r.max(g).max(b) * self.share(pixel) } else { 0.0 };
                 if given >= f32::MIN_POSITIVE { given } else { 0.0 }
             }
         }
@@ -54,13 +54,18 @@ impl Emission {
     /// is not finite gives none.
     #[inline]
     pub fn luminance(&self, pixel: &[f32; 4]) -> f32 {
-        let [r, g, b, _] = *pixel;
-        let sum = self.weights[0] * r.max(0.0) + self.weights[1] * g.max(0.0) + self.weights[2] * b.max(0.0);
-        let finite = r.is_finite() && g.is_finite() && b.is_finite();
+        let sum = self.seen(pixel);
         // No number, where weights of both signs made infinities of large channels, is not above 0.
-        let given = if finite && sum > 0.0 { sum.min(f32::MAX) * self.share(pixel) } else { 0.0 };
+        let given = if sum > 0.0 { sum.min(f32::MAX) * self.share(pixel) } else { 0.0 };
         // A device may take what is below the smallest normal number for nothing.
         if given >= f32::MIN_POSITIVE { given } else { 0.0 }
+    }
+
+    /// The weighted sum of what is not negative of a colour's channels; 0 where one of them is not finite.
+    #[inline]
+    fn seen(&self, &[r, g, b, _]: &[f32; 4]) -> f32 {
+        let sum = self.weights[0] * r.max(0.0) + self.weights[1] * g.max(0.0) + self.weights[2] * b.max(0.0);
+        if r.is_finite() && g.is_finite() && b.is_finite() { sum } else { 0.0 }
     }
 
     /// Pixels by what they give of their colour.
@@ -122,6 +127,10 @@ mod tests {
         let ap0 = Emission { weights: [0.343_966_46, 0.728_166_1, -0.072_132_55], ..REC709 };
         assert_eq!(ap0.luminance(&[0.0, 0.0, 1.0, 1.0]).to_bits(), 0);
         assert_eq!(ap0.luminance(&[0.01, 0.001, 0.3, 1.0]), 0.0);
+        // Nor is it bright in any other way.
+        let brightest = ap0.by(LightBy::Brightest);
+        assert_eq!([[0.0, 0.0, 1.0, 1.0], [0.01, 0.001, 0.3, 1.0]].map(|pixel| brightest.brightness(&pixel)), [0.0; 2]);
+        assert_eq!(brightest.brightness(&[0.1, 0.001, 0.3, 1.0]), 0.3);
         assert!(ap0.luminance(&[0.1, 0.001, 0.3, 1.0]) > 0.0);
         let wide = Emission { weights: [4.0, -5.0, 2.0], ..REC709 };
         assert_eq!(wide.luminance(&[f32::MAX; 4]), 0.0);

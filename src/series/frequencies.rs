@@ -20,6 +20,8 @@ use realfft::RealFftPlanner;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
+use crate::fast_length::fast_length;
+
 /// Points that a B-spline reaches.
 const ORDER: usize = 20;
 
@@ -38,19 +40,9 @@ pub(crate) fn error(points: usize) -> f64 {
     2.1 * ratio.powi(ORDER as i32) + 1e-13
 }
 
-/// Frequencies for so many points: products of small primes.
+/// Frequencies for so many points.
 fn length(points: usize) -> usize {
-    let least = ((OVERSAMPLING * points as f64) as usize).max(4 * ORDER);
-    let is_good = |length: &usize| {
-        let rest = [2, 3, 5].iter().fold(*length, |mut rest, prime| {
-            while rest % prime == 0 {
-                rest /= prime;
-            }
-            rest
-        });
-        rest == 1
-    };
-    (least..).find(is_good).unwrap_or(least)
+    fast_length(((OVERSAMPLING * points as f64).ceil() as usize).max(4 * ORDER))
 }
 
 /// What computing one of so many points takes, about, in nanoseconds.

@@ -119,12 +119,13 @@ fn groups(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
             Transform::Direct if evaluator == Evaluator::Local => writeln!(out, ", summed where they reach")?,
             Transform::Direct => writeln!(out, ", summed directly")?,
             Transform::Dispatch => writeln!(out, ", degree {n} x {m}")?,
-            Transform::Photo(Reduction { level: 0, .. }) => {
-                writeln!(out, ", degree {n} x {m}, from the photo's pixels")?
-            }
-            Transform::Photo(Reduction { points: [x, y], transformed, .. }) => {
-                let what = if transformed { "the transform of the photo's moments" } else { "the photo's moments" };
-                writeln!(out, ", degree {n} x {m}, from {what} on {x} x {y} points")?;
+            Transform::Photo(Reduction { level, points: [x, y], transformed, .. }) => {
+                let transform = if transformed { "the transform of " } else { "" };
+                write!(out, ", degree {n} x {m}, from {transform}the photo's ")?;
+                match level {
+                    0 => writeln!(out, "pixels")?,
+                    _ => writeln!(out, "moments on {x} x {y} points")?,
+                }
             }
             Transform::Gather(Gathering { cells: Cells { counts: [x, y], orders: [p, q] }, sizes }) => {
                 write!(out, ", degree {n} x {m}, gathered in {x} x {y} cells of {p} x {q} moments")?;

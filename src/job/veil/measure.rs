@@ -82,8 +82,8 @@ pub(super) fn measured(
     Ok(worst)
 }
 
-/// A kernel by a table, for sums of millions: off by less than 1e-5, most of it far out in a Gaussian, but for the one place in a table at which cie has a
-/// kink.
+/// A kernel by a table, for sums of millions: off by less than 1e-5, most of it far out in a Gaussian, but for the one place in a
+/// table at which cie has a kink.
 ///
 /// Its places are evenly spread in each octave, so that the bits of an angle say between which two of them it lies.
 fn looked_up(kernel: &Kernel, [from, to]: [f64; 2]) -> Result<Kernel> {

@@ -24,7 +24,7 @@ use crate::laboratory::chart::{Chart, Kind, Sheet};
 use crate::laboratory::page::png_bytes;
 use crate::optics::{GhostPath, LensGhosts, System};
 use crate::options::OpticsArgs;
-use crate::scene::{NamedLens, Optical};
+use crate::scene::{NamedLens, Optical, OpticsSection};
 use crate::terminal::stdout;
 use crate::{Error, Result, target};
 
@@ -161,7 +161,7 @@ fn show(args: &Args, name: &Path) -> Result<Report> {
 }
 
 fn list(args: &Args) -> Result<()> {
-    if args.optics.section().sets() {
+    if args.optics.section() != OpticsSection::default() {
         return Err(Error::Usage("name the lens that is to be set; vglare lens lists them".into()));
     }
     let entries = list::entries()?;

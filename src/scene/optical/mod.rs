@@ -92,9 +92,9 @@ impl OpticsSection {
         self.setting = setting.or(self.setting.take());
     }
 
-    /// Whether it says how a lens is set, whichever that is.
-    pub fn sets(&self) -> bool {
-        *self != Self { lens: self.lens.clone(), file: self.file.clone(), ..Self::default() }
+    /// Whether it says what is of a lens alone: an opening and a sensor may be a starburst's.
+    pub fn sets_lens(&self) -> bool {
+        self.focus.is_some() || self.coating.is_some() || self.setting.is_some()
     }
 
     /// The lens's surfaces, as they are set but for what a stop or a focus changes.
@@ -264,10 +264,10 @@ pub fn named_lens(name: &Path, settings: &OpticsSection) -> Result<NamedLens> {
 }
 
 fn without_surfaces(name: &str, settings: &OpticsSection) -> Result<()> {
-    if settings.sets() {
+    if settings.sets_lens() {
         return Err(Error::Usage(format!(
-            "the lens {name} is a table of ghosts: an f-number, focus, sensor, blades, coating and setting are of lenses that are known \
-             by their surfaces (vglare lens lists them)"
+            "the lens {name} is a table of ghosts: focus, coating and setting are of lenses that are known by their surfaces (vglare lens \
+             lists them)"
         )));
     }
     Ok(())

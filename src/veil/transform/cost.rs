@@ -4,7 +4,8 @@
 
 use super::passes::BLOCK;
 use super::taps::Taps;
-use super::{MOST_MEMORY, Task, good};
+use super::{MOST_MEMORY, Task};
+use crate::fast_length::fast_length;
 use crate::veil::error::Error;
 use crate::veil::geometry::Border;
 use crate::veil::simd::padded;
@@ -64,7 +65,7 @@ impl Cost {
     pub fn of_widest(task: &Task) -> Self {
         let most = task.most();
         let beyond = if task.border == Border::None { [0, 0] } else { task.size };
-        let points = [0, 1].map(|side| good(task.size[side] + beyond[side] + most[side]));
+        let points = [0, 1].map(|side| fast_length(task.size[side] + beyond[side] + most[side]));
         let bytes = size_of::<f64>() * (most[0] + 1) * (most[1] + 1) + bytes(task, points, true, 1);
         Self { nanoseconds: nanoseconds(task, points), taps: f64::INFINITY, bytes, bytes_of_taps: bytes }
     }

@@ -27,7 +27,6 @@ mod certify;
 mod cost;
 mod direct;
 mod evaluate;
-mod good;
 mod passes;
 mod pixels;
 mod taps;
@@ -37,8 +36,8 @@ use super::evaluate::Pool;
 use super::geometry::Border;
 use super::picture::Picture;
 use super::simd::Real;
+use crate::fast_length::fast_length;
 use cost::Cost;
-use good::good;
 use passes::{Passes, Rows, Spectrum};
 use taps::Taps;
 
@@ -142,7 +141,7 @@ impl Transform {
             [0, 1].map(|side| if task.border == Border::None { 0 } else { farthest[side].min(task.size[side]) });
         let points = [0, 1].map(|side| {
             let seen = task.size[side] + margin[side] + margin[side].max(farthest[side]);
-            good(seen.max(reach[side][0] + reach[side][1] + 1))
+            fast_length(seen.max(reach[side][0] + reach[side][1] + 1))
         });
         let cost = Cost::new(&task, &taps, points);
         let by_taps = match choice {
