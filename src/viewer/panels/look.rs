@@ -142,7 +142,8 @@ fn preset(ui: &mut Ui, look: &mut Look, opened: &Look) {
     let about = "What the lights are seen through.";
     let tip = Tip { name: "Lens", about, span, reset: called(&opened.lens) };
     let row = tip.row(ui, |ui| {
-        let list = ComboBox::from_id_salt("preset").selected_text(called(&look.lens));
+        // High enough for all: that there are more below is seen by nothing.
+        let list = ComboBox::from_id_salt("preset").height(720.0).selected_text(called(&look.lens));
         list.show_ui(ui, |ui| {
             for preset in presets() {
                 // A preset that is compiled in can be read; a test reads them all.
