@@ -8,7 +8,7 @@ float emitted(vec4 pixel, vec3 weights) {
     vec3 colour = max(pixel.rgb, 0.0);
     precise float sum = weights.r * colour.r + weights.g * colour.g + weights.b * colour.b;
 #ifdef BRIGHTEST
-    sum = sum > 0.0 ? max(max(colour.r, colour.g), colour.b) : 0.0;
+    sum = sum >= SMALLEST ? max(max(colour.r, colour.g), colour.b) : 0.0;
 #else
     sum = sum > 0.0 ? min(sum, LARGEST) : 0.0;
 #endif

@@ -42,7 +42,9 @@ impl Emission {
             LightBy::Luminance => self.luminance(pixel),
             LightBy::Brightest => {
                 let [r, g, b, _] = *pixel;
-                let given = if self.seen(pixel) > 0.0 { r.max(g).max(b) * self.share(pixel) } else { 0.0 };
+                // A device may take what is below the smallest normal number for nothing, before a comparison as well as after.
+                let seen = self.seen(pixel) >= f32::MIN_POSITIVE;
+                let given = if seen { r.max(g).max(b) * self.share(pixel) } else { 0.0 };
                 if given >= f32::MIN_POSITIVE { given } else { 0.0 }
             }
         }
@@ -131,6 +133,8 @@ mod tests {
         let brightest = ap0.by(LightBy::Brightest);
         assert_eq!([[0.0, 0.0, 1.0, 1.0], [0.01, 0.001, 0.3, 1.0]].map(|pixel| brightest.brightness(&pixel)), [0.0; 2]);
         assert_eq!(brightest.brightness(&[0.1, 0.001, 0.3, 1.0]), 0.3);
+        // A sum that a device may have flushed to 0, of a channel that it has not.
+        assert_eq!(REC709.by(LightBy::Brightest).brightness(&[0.0, f32::MIN_POSITIVE, 0.0, 1.0]), 0.0);
         assert!(ap0.luminance(&[0.1, 0.001, 0.3, 1.0]) > 0.0);
         let wide = Emission { weights: [4.0, -5.0, 2.0], ..REC709 };
         assert_eq!(wide.luminance(&[f32::MAX; 4]), 0.0);
