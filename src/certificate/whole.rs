@@ -28,11 +28,9 @@ pub(super) fn crossings(plan: &Plan, images: &Images) -> Vec<[i32; 2]> {
 
 /// How many columns and rows there is time for.
 fn counts(images: &Images) -> [usize; 2] {
-    let raster = images.raster();
-    let pixels = raster.pixels() as f64;
     let (mut products, mut bells) = (0.0, 0.0);
     for image in images.all() {
-        let shape = image.ghost.bell.shape();
+        let (shape, pixels) = (image.ghost.bell.shape(), images.raster_of(image).pixels() as f64);
         if let Modes::Product(_) = shape.modes() {
             products += 3.0 * pixels;
         } else {
@@ -49,7 +47,7 @@ fn counts(images: &Images) -> [usize; 2] {
 
 /// What a value of a bell takes, about, over that of the simplest.
 fn effort(bell: &Bell) -> f64 {
-    if let Bell::Iris(iris) = bell { 1.0 + 0.5 * f64::from(iris.blades()) } else { 2.0 }
+    if let Bell::Iris(iris) = bell { 0.5 + 0.5 * iris.steps() as f64 } else { 2.0 }
 }
 
 /// So many lines of `length` from `first` on: both ends, some that are wanted, and others between them.

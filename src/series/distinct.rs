@@ -1,6 +1,8 @@
 //! Bells told apart: a scene may have as many as it has ghosts.
 
-use rustc_hash::FxHashMap;
+use std::hash::Hasher;
+
+use rustc_hash::{FxHashMap, FxHasher};
 
 use super::Bell;
 
@@ -50,7 +52,7 @@ impl<'a> Distinct<'a> {
                 (one.rim(), one.blades()) == (other.rim(), other.blades())
             }
             (Bell::Iris(one), Bell::Iris(other)) if self.turned => {
-                (one.edge(), one.blades()) == (other.edge(), other.blades())
+                (one.edge(), one.blades()) == (other.edge(), other.blades()) && one.cuts() == other.cuts()
             }
             _ => one == other,
         }
@@ -70,8 +72,13 @@ fn digest(bell: &Bell, turned: bool) -> [u64; 4] {
         Bell::Disc(disc) => [disc.rim(), f64::from(disc.blades()), if turned { 0.0 } else { disc.rotation() }],
         Bell::Iris(iris) => [iris.edge(), f64::from(iris.blades()), if turned { 0.0 } else { iris.rotation() }],
     };
+    let cuts = if let Bell::Iris(iris) = bell { iris.cuts() } else { &[] };
+    let mut hasher = FxHasher::default();
+    let numbers = cuts.iter().flat_map(|cut| [cut.centre.x, cut.centre.y, cut.radius]);
+    numbers.for_each(|number| hasher.write_u64(number.to_bits()));
+    let kind = u64::from(bell.kind()) ^ hasher.finish();
     // −0 is 0.
-    [u64::from(bell.kind()), (first + 0.0).to_bits(), (second + 0.0).to_bits(), (third + 0.0).to_bits()]
+    [kind, (first + 0.0).to_bits(), (second + 0.0).to_bits(), (third + 0.0).to_bits()]
 }
 
 #[cfg(test)]

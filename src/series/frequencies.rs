@@ -30,8 +30,9 @@ const OVERSAMPLING: f64 = 2.2;
 
 type Wave = Complex<f64>;
 
-/// Of pixels themselves no waves are wanted that turn faster than this from one to the next, in radians.
-pub(crate) const FASTEST: f64 = 0.7 * PI;
+/// Of pixels no waves are read that turn faster than this from one to the next, in radians: they repeat themselves after whole turns, and
+/// the frequencies of y are gone through once.
+pub(crate) const FASTEST: f64 = 1.4 * PI;
 
 /// By how much a wave is off where it comes from a transform of so many points, over all light.
 pub(crate) fn error(points: usize) -> f64 {
@@ -70,16 +71,10 @@ pub(crate) struct Spectrum {
 }
 
 impl Spectrum {
-    /// Of columns and rows of values, each a channel's by column and row; counted from the middle ones. Waves of x are to turn by no
-    /// more than `fastest` radians a point.
-    pub fn new(
-        channels: usize,
-        points: [usize; 2],
-        fastest: f64,
-        value: impl Fn(usize, usize, usize) -> f64 + Sync,
-    ) -> Self {
+    /// Of columns and rows of values, each a channel's by column and row; counted from the middle ones.
+    pub fn new(channels: usize, points: [usize; 2], value: impl Fn(usize, usize, usize) -> f64 + Sync) -> Self {
         let length = points.map(length);
-        let columns = ((fastest / TAU * length[0] as f64) as usize + ORDER).min(length[0] / 2) + 1;
+        let columns = length[0] / 2 + 1;
         let gains = [0, 1].map(|axis| gains(points[axis], length[axis]));
         let channel = |channel: usize| {
             let along = along_rows(points, length[0], |x, y| value(channel, x, y) * gains[0][x] * gains[1][y]);

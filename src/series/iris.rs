@@ -4,7 +4,10 @@
 //! A polygon is the product of one logistic step for each side, a round iris one step of the radius squared: functions without a kink
 //! anywhere, so that their transforms fall exponentially, and a series of some hundred harmonics has what a disc's smoothstep needs
 //! thousands for.
+//!
+//! Rims of the lens may cut it (`cut`): each is one more step, of the radius squared about the middle of its circle.
 
+mod cut;
 mod transform;
 
 use std::f64::consts::PI;
@@ -17,6 +20,7 @@ use super::bell::{Modes, Shape};
 use super::disc::MOST_BLADES;
 use super::frequencies::Spectrum;
 use super::tails::copies;
+pub use cut::Cut;
 
 /// The softest edge, and the sharpest: of a sharper one a disc does as well, which ends.
 const EDGES: [f64; 2] = [0.01, 0.3];
@@ -37,8 +41,12 @@ struct Inner {
     sides: Vec<DVec2>,
     /// How far the sides are from the centre.
     apothem: f64,
-    /// What the product of steps has to be multiplied by to be 1 at the centre.
+    /// Rims that cut it.
+    cuts: Vec<Cut>,
+    /// What the product of steps has to be multiplied by to be 1 at the centre, or, where it is cut, at most.
     peak: f64,
+    /// That of the whole opening.
+    whole_peak: f64,
     /// The steepest place of all.
     steepest: f64,
     moments: OnceLock<Moments>,
@@ -46,7 +54,7 @@ struct Inner {
     spectrum: OnceLock<(f64, Spectrum)>,
 }
 
-/// ∫∫ of it, and the mean square distance from the centre along one axis.
+/// ∫∫ of it, and the mean square distance from its centroid along one axis, the mean of both.
 #[derive(Debug, Clone, Copy)]
 struct Moments {
     area: f64,
@@ -55,7 +63,8 @@ struct Moments {
 
 impl PartialEq for Iris {
     fn eq(&self, other: &Self) -> bool {
-        (self.edge(), self.blades(), self.rotation()) == (other.edge(), other.blades(), other.rotation())
+        let opening = |iris: &Self| (iris.edge(), iris.blades(), iris.rotation());
+        opening(self) == opening(other) && self.cuts() == other.cuts()
     }
 }
 
@@ -97,21 +106,26 @@ impl Iris {
             _ => (1.0 + (-apothem / edge).exp()).powi(blades as i32),
         };
         let steepest = match blades {
-            0 => {
-                // f (1 − f) r / e, which is steepest a little beyond the edge.
-                let slope = |k: u32| {
-                    let radius = 0.002 * f64::from(k);
-                    let step = step_down(0.5 * (radius * radius - 1.0) / edge);
-                    step * (1.0 - step) * radius / edge
-                };
-                1.01 * peak * (0..1000).map(slope).fold(0.0, f64::max)
-            }
+            0 => peak * steepest_of_round(edge),
             // Of Σ σ_k s_k times the product of the (1 − σ_k) no more than 1/4 is to be had from one side, and from neighbours,
             // whose directions differ, less than this.
             _ => 0.3 * peak / edge,
         };
         let (moments, spectrum) = (OnceLock::new(), OnceLock::new());
-        Self(Arc::new(Inner { edge, blades, rotation, sides, apothem, peak, steepest, moments, spectrum }))
+        let (cuts, whole_peak) = (Vec::new(), peak);
+        Self(Arc::new(Inner {
+            edge,
+            blades,
+            rotation,
+            sides,
+            apothem,
+            cuts,
+            peak,
+            whole_peak,
+            steepest,
+            moments,
+            spectrum,
+        }))
     }
 
     /// A round one and a polygon, for tests.
@@ -139,13 +153,19 @@ impl Iris {
         self.0.blades == 0
     }
 
+    /// How many steps it is the product of.
+    pub(crate) fn steps(&self) -> usize {
+        self.0.sides.len().max(1) + self.0.cuts.len()
+    }
+
     /// At a point in sizes. `bells/iris.glsl` does the same, in the same order.
     fn at(&self, at: DVec2) -> f64 {
-        let Inner { edge, sides, apothem, peak, .. } = &*self.0;
-        if self.is_round() {
-            return peak * step_down(0.5 * (at.length_squared() - 1.0) / edge);
-        }
-        sides.iter().fold(*peak, |product, side| product * step_down((side.dot(at) - apothem) / edge))
+        let Inner { edge, sides, apothem, cuts, peak, .. } = &*self.0;
+        let opening = match self.is_round() {
+            true => peak * step_down(0.5 * (at.length_squared() - 1.0) / edge),
+            false => sides.iter().fold(*peak, |product, side| product * step_down((side.dot(at) - apothem) / edge)),
+        };
+        cuts.iter().fold(opening, |product, cut| product * step_down(cut.exponent(at) / edge))
     }
 
     /// What it is at most at a radius or beyond: every point is beyond one side by no less than the radius times the apothem.
@@ -169,15 +189,27 @@ impl Iris {
             let (step, values) = self.samples(0.0);
             let side = values.nrows();
             let middle = 0.5 * (side as f64 - 1.0);
-            let (mut sum, mut square) = (0.0, 0.0);
-            for ((_, column), value) in values.indexed_iter() {
-                let x = step * (column as f64 - middle);
+            let (mut sum, mut first, mut square) = (0.0, DVec2::ZERO, 0.0);
+            for ((row, column), value) in values.indexed_iter() {
+                let at = step * DVec2::new(column as f64 - middle, row as f64 - middle);
                 sum += value;
-                square += value * x * x;
+                first += *value * at;
+                square += value * at.length_squared();
             }
-            Moments { area: sum * step * step, variance: square / sum }
+            let centroid = first / sum;
+            Moments { area: sum * step * step, variance: 0.5 * (square / sum - centroid.length_squared()) }
         })
     }
+}
+
+/// Of a round one that is 1 at its brightest, the steepest slope: f (1 − f) r / e is steepest a little beyond the edge.
+fn steepest_of_round(edge: f64) -> f64 {
+    let slope = |k: u32| {
+        let radius = 0.002 * f64::from(k);
+        let step = step_down(0.5 * (radius * radius - 1.0) / edge);
+        step * (1.0 - step) * radius / edge
+    };
+    1.01 * (0..1000).map(slope).fold(0.0, f64::max)
 }
 
 /// 1/(1 + e^t): what a step has left.
@@ -210,9 +242,10 @@ impl Shape for Iris {
     }
 
     fn steepest(&self, distance: f64) -> f64 {
-        let Inner { edge, blades, steepest, .. } = &*self.0;
+        let Inner { edge, blades, cuts, steepest, .. } = &*self.0;
         // What is left, times the sum of the sides that it lies beyond.
         let sides = if *blades == 0 { distance.max(1.0) } else { 1.0 + f64::from(*blades) / PI };
+        let sides = sides + cuts.iter().map(|cut| cut.slope_at(distance.max(1.0))).sum::<f64>();
         steepest.min(self.beyond_radius(distance) * sides / edge)
     }
 
@@ -234,24 +267,28 @@ impl Shape for Iris {
     }
 
     fn outline(&self, towards: DVec2) -> f64 {
-        let Inner { sides, apothem, .. } = &*self.0;
+        let Inner { sides, apothem, cuts, .. } = &*self.0;
         let farthest = sides.iter().map(|side| side.dot(towards)).fold(f64::MIN, f64::max);
-        if self.is_round() { 1.0 } else { apothem / farthest }
+        let opening = if self.is_round() { 1.0 } else { apothem / farthest };
+        cuts.iter().filter_map(|cut| cut.rim(towards)).fold(opening, f64::min)
     }
 
     /// A step's exponential is one along x times one along y: a side's, and that of the radius squared.
     fn over(&self, xs: &[f64], ys: &[f64], size: DVec2, visit: &mut dyn FnMut(usize, &[f64])) {
-        let Inner { edge, sides, apothem, peak, .. } = &*self.0;
+        let Inner { edge, sides, apothem, cuts, peak, .. } = &*self.0;
         // Farther than this all steps are nothing, or there is nothing left of one; and no product is beyond what f64 holds.
-        let exponential = |exponent: f64| (exponent / edge).clamp(-300.0, 300.0).exp();
+        let exponential = |exponent: f64| (exponent / edge).clamp(-340.0, 340.0).exp();
         let round = |x: f64| exponential(0.5 * (x / size.x).powi(2));
-        let across: Vec<Vec<f64>> = match self.is_round() {
+        let mut across: Vec<Vec<f64>> = match self.is_round() {
             true => vec![xs.iter().copied().map(round).collect()],
             false => sides.iter().map(|side| xs.iter().map(|x| exponential(side.x * x / size.x)).collect()).collect(),
         };
-        let down = |step: usize, y: f64| match sides.get(step) {
-            Some(side) => exponential(side.y * y / size.y - apothem),
-            None => exponential(0.5 * ((y / size.y).powi(2) - 1.0)),
+        let opening = across.len();
+        across.extend(cuts.iter().map(|cut| xs.iter().map(|x| exponential(cut.across(x / size.x))).collect()));
+        let down = |step: usize, y: f64| match (sides.get(step), cuts.get(step.wrapping_sub(opening))) {
+            (Some(side), _) => exponential(side.y * y / size.y - apothem),
+            (None, Some(cut)) => exponential(cut.down(y / size.y)),
+            (None, None) => exponential(0.5 * ((y / size.y).powi(2) - 1.0)),
         };
         let mut row = vec![0.0; xs.len()];
         for (index, y) in ys.iter().enumerate() {
@@ -283,14 +320,17 @@ impl Shape for Iris {
         Modes::Plane(self)
     }
 
-    /// One over the edge, where the sides are or 1/2 where it is round, what is multiplied, and how many sides; then two sides a row.
+    /// One over the edge, where the sides are, what is multiplied, and how many sides and, 32 for each, cuts; then two sides a row, and
+    /// a row for each cut.
     fn parameters(&self) -> Vec<[f64; 4]> {
-        let Inner { edge, blades, sides, apothem, peak, .. } = &*self.0;
-        let mut rows = vec![[1.0 / edge, *apothem, *peak, f64::from(*blades)]];
+        let Inner { edge, blades, sides, apothem, cuts, peak, .. } = &*self.0;
+        let steps = *blades + cut::IN_SHADERS * cuts.len() as u32;
+        let mut rows = vec![[1.0 / edge, *apothem, *peak, f64::from(steps)]];
         rows.extend(sides.chunks(2).map(|pair| {
             let second = pair.get(1).copied().unwrap_or_default();
             [pair[0].x, pair[0].y, second.x, second.y]
         }));
+        rows.extend(cuts.iter().map(Cut::row));
         rows
     }
 }

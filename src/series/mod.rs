@@ -40,7 +40,7 @@ pub use bell::{Bell, Bounded, Factor, Modes, Plane, Radial, Shape};
 pub use disc::{Disc, MOST_BLADES};
 pub(crate) use distinct::Distinct;
 pub use gaussian::{windowed_gaussian, wrapped_gaussian};
-pub use iris::Iris;
+pub use iris::{Cut, Iris};
 pub use periodic::{SineGaussian, VonMises};
 pub use profile::Profile;
 pub use spline::{CUBIC, spline_error, spline_error_of, spline_gains};

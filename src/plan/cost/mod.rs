@@ -192,8 +192,8 @@ fn in_gaussians(bell: &Bell, precision: Precision) -> f64 {
         // Three rows of a table are read.
         Bell::Disc(_) => [5.0, 7.5],
         // An exponential for each side.
-        Bell::Iris(iris) if iris.is_round() => [2.0, 4.0],
-        Bell::Iris(iris) => [2.0, 4.0].map(|one| 1.0 + one * f64::from(iris.blades())),
+        Bell::Iris(iris) if iris.is_round() && iris.cuts().is_empty() => [2.0, 4.0],
+        Bell::Iris(iris) => [2.0, 4.0].map(|one| 1.0 + one * iris.steps() as f64),
     };
     if precision == Precision::Single { single } else { double }
 }

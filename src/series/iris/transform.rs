@@ -39,20 +39,27 @@ impl Iris {
                 let at = place(row).zip(place(column));
                 at.map_or(0.0, |at| values[at])
             };
-            (step, Spectrum::new(1, [values.nrows() + 2 * zeros; 2], PI, value))
+            (step, Spectrum::new(1, [values.nrows() + 2 * zeros; 2], value))
         })
     }
 
-    /// η at the poles.
+    /// η at the poles; that of the nearest.
     pub(super) fn fall(&self) -> f64 {
         let pole = PI * self.edge();
-        if self.is_round() { (0.5 * ((1.0 + 4.0 * pole * pole).sqrt() - 1.0)).sqrt() } else { pole }
+        let round = |radius: f64| {
+            let pole = pole / radius;
+            radius * (0.5 * ((1.0 + 4.0 * pole * pole).sqrt() - 1.0)).sqrt()
+        };
+        let opening = if self.is_round() { round(1.0) } else { pole };
+        self.cuts().iter().map(|cut| round(cut.radius)).fold(opening, f64::min)
     }
 
-    /// e^−ηz times a factor that blades have, and a little more for each e-fold.
+    /// e^−ηz times a factor that blades have, and one of cuts, and a little more for each e-fold.
     fn falls(&self, z: f64, [factor, of_blades]: [f64; 2]) -> f64 {
         let folds = self.fall() * z.max(0.0);
-        (factor + of_blades * f64::from(self.blades()).powi(4)) * (1.0 + 0.05 * folds).powi(2) * (-folds).exp()
+        let cut = self.0.peak / self.0.whole_peak * (1.0 + self.cuts().len() as f64).powi(2);
+        let factor = factor + of_blades * f64::from(self.blades()).powi(4);
+        cut * factor * (1.0 + 0.05 * folds).powi(2) * (-folds).exp()
     }
 }
 
