@@ -26,6 +26,11 @@ impl Window {
     pub fn pixels(&self) -> usize {
         self.width as usize * self.height as usize
     }
+
+    /// So many of its columns and rows, from one on that is counted from its own corner.
+    pub(crate) fn part(&self, x: u32, y: u32, width: u32, height: u32) -> Self {
+        Self { x: self.x + x as i32, y: self.y + y as i32, width, height }
+    }
 }
 
 /// The picture (OpenEXR's display window), and the window of pixels that is stored (its data window).

@@ -196,14 +196,12 @@ impl Window {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
 
     use super::*;
     use crate::chance::Chance;
+    use crate::look::{Look, LookLens};
     use crate::plan::Request;
-    use crate::problem::Images;
     use crate::raster::Raster;
-    use crate::scene::{Optical, OpticsSection};
 
     /// A few waves of one period are themselves in another, within the bound, at every pixel; and the bound is of their size.
     #[test]
@@ -247,9 +245,11 @@ mod tests {
             pixels[lamp] = [0, 1, 2, 3].map(|_| chance.between(20.0, 90.0) as f32);
         }
         let raster = Raster::new(&pixels, frame).unwrap();
-        let section = OpticsSection { lens: Some("double-gauss".into()), ..OpticsSection::default() };
-        let lens = Optical::new(section).unwrap().fitted(&frame);
-        let images = Arc::new(Images::new(raster, &lens.lens().ghosts, DVec2::new(0.1, -0.05), 1.0, [1.0; 3]));
+        let look =
+            Look { lens: LookLens::preset("double-gauss").unwrap(), axis: DVec2::new(0.1, -0.05), ..Look::default() };
+        // In patches, each with its own cut ghosts.
+        let images = look.images(|| raster).unwrap();
+        assert!(images.patches() > 2);
         let problem = Problem::with_images(Vec::new(), images.clone(), frame);
         for tolerance in [1e-2, 1e-3] {
             let plan = crate::plan::plan(&problem, &Request::new(tolerance)).unwrap();

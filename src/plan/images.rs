@@ -24,7 +24,7 @@ use super::terms::{self, Group};
 use super::weigh::{Weighed, peak_weight};
 use crate::Error;
 use crate::problem::{Image, Images};
-use crate::raster::{Reduction, aliasing, spline};
+use crate::raster::{Raster, Reduction, aliasing, spline};
 use crate::series::frequencies;
 use crate::series::{Bell, Modes as Bells};
 
@@ -51,10 +51,24 @@ pub(super) fn weights(images: &Images, scale: Rgb) -> Vec<f64> {
 /// The images' groups, as [`terms::group`] makes them of ghosts; their reductions are still to be chosen.
 pub(super) fn groups(images: &Images, weighed: &Weighed) -> Vec<Group> {
     let gathered: Vec<_> = images.all().iter().map(|image| images.gathered(image)).collect();
-    let unreduced = Transform::Photo(images.raster().reduction(1, true));
-    let pixels = images.raster().pixels();
-    let groups = terms::group(&gathered, &weighed.images).into_iter();
-    groups.map(|group| Group { ghosts: pixels * group.ghosts, transform: unreduced, ..group }).collect()
+    let of_patch = |patch: usize| {
+        let weight = |(image, weight): (&Image, &f64)| if image.patch == patch { *weight } else { 0.0 };
+        let weights: Vec<f64> = images.all().iter().zip(&weighed.images).map(weight).collect();
+        terms::group(&gathered, &weights)
+    };
+    // Ghosts of different pixels share no waves.
+    let groups = (0..=images.patches()).flat_map(of_patch);
+    let unreduced = |group: Group| {
+        let raster = raster(images, &group);
+        let transform = Transform::Photo(raster.reduction(1, true));
+        Group { ghosts: raster.pixels() * group.ghosts, transform, ..group }
+    };
+    groups.map(unreduced).collect()
+}
+
+/// The pixels that a group's images are of.
+fn raster<'a>(images: &'a Images, group: &Group) -> &'a Raster {
+    group.members.first().map_or(images.raster(), |member| images.raster_of(&images.all()[*member as usize]))
 }
 
 /// As many modes as images are looked at with: so many that next to nothing lies beyond them, or, where that would be very many,
@@ -80,18 +94,10 @@ pub(super) fn enough(groups: &mut [Group], period: DVec2, usable: f64, effort: &
 /// Chooses for each group of images a lattice such that all of them are off by no more than a budget, and gives by how much they
 /// are; the groups whose error falls most for what it costs are refined first.
 pub(super) fn reduce(groups: &mut [Group], images: &Images, period: DVec2, budget: f64) -> f64 {
-    let raster = images.raster();
-    let ways: Vec<Reduction> = [false, true]
-        .into_iter()
-        .flat_map(|doubles| (1..=raster.levels()).rev().map(move |level| raster.reduction(level, doubles)))
-        .flat_map(|reduction| [reduction, reduction.by_transform()])
-        .chain((images.all().len() >= MANY_IMAGES).then(|| raster.reduction(0, true).by_transform()))
-        .chain([raster.reduction(0, true)])
-        .collect();
     let mut choices: Vec<Choice> = groups
         .iter_mut()
         .filter(|group| matches!(group.transform, Transform::Photo(_)))
-        .map(|group| Choice::new(group, &ways, images, period))
+        .map(|group| Choice::new(group, images, period))
         .collect();
     let mut off: f64 = choices.iter().map(Choice::error).sum();
     while off.is_nan() || off > budget {
@@ -113,23 +119,31 @@ struct Choice<'a> {
 }
 
 impl<'a> Choice<'a> {
-    fn new(group: &'a mut Group, ways: &[Reduction], images: &Images, period: DVec2) -> Self {
+    fn new(group: &'a mut Group, images: &Images, period: DVec2) -> Self {
+        let raster = raster(images, group);
+        let sharing = images.all().iter().filter(|image| std::ptr::eq(images.raster_of(image), raster)).count();
+        let ways = [false, true]
+            .into_iter()
+            .flat_map(|doubles| (1..=raster.levels()).rev().map(move |level| raster.reduction(level, doubles)))
+            .flat_map(|reduction| [reduction, reduction.by_transform()])
+            .chain((sharing >= MANY_IMAGES).then(|| raster.reduction(0, true).by_transform()))
+            .chain([raster.reduction(0, true)]);
         let held = Decay::new(group, period).marginals(group.degree);
         let along = |image: &u32| images.all()[*image as usize].along.abs();
         let along = group.members.iter().map(along).fold(0.0, f64::max);
         let mut left: Vec<(Reduction, f64, f64)> = Vec::new();
         for way in ways {
-            let theta = TAU * along * way.pitch() * images.raster().frame().pixel_sides() / period;
-            let error = group.weight * off_by(&held, theta, *way);
+            let theta = TAU * along * way.pitch() * raster.frame().pixel_sides() / period;
+            let error = group.weight * off_by(&held, theta, way);
             // Moments in doubles take as long as those of many images do.
             // A transform serves all images.
             let points = way.points.map(|points| points as usize);
-            let transform = if way.transformed { frequencies::work(points) / images.all().len() as f64 } else { 0.0 };
-            let doubled = if way.doubles { DOUBLED * images.raster().pixels() as f64 } else { 0.0 };
-            let cost = cost(group, *way) + transform * group.members.len() as f64 + doubled;
+            let transform = if way.transformed { frequencies::work(points) / sharing as f64 } else { 0.0 };
+            let doubled = if way.doubles { DOUBLED * raster.pixels() as f64 } else { 0.0 };
+            let cost = cost(group, way) + transform * group.members.len() as f64 + doubled;
             left.retain(|(_, other, dear)| *other > error || *dear < cost);
             if left.iter().all(|(_, other, _)| *other > error) {
-                left.push((*way, error, cost));
+                left.push((way, error, cost));
             }
         }
         left.sort_by(|one, other| one.2.total_cmp(&other.2));
@@ -227,7 +241,7 @@ pub(super) fn sums(
     let all: Vec<(&Image, Reduction, [u32; 2])> = groups.iter().flat_map(each).collect();
     let modes = counts.iter().map(|&count| count as usize).sum();
     // Before any task asks for them: one that waits for another to have made them may never go on.
-    all.iter().for_each(|(_, reduction, _)| images.raster().prepare(*reduction));
+    all.iter().for_each(|(image, reduction, _)| images.raster_of(image).prepare(*reduction));
     let chunk = |chunk: &[(&Image, Reduction, [u32; 2])]| {
         let mut sums = vec![[0.0; 12]; modes];
         for (image, reduction, degree) in chunk {
@@ -262,7 +276,7 @@ fn add(
         // Finding modes enough for it has failed before anyone looks at them.
         Bells::None => return,
     };
-    let raster = images.raster();
+    let raster = images.raster_of(image);
     let first = TAU * image.along / period;
     let wanted = image.ghost.radiance.map(|radiance| radiance != 0.0);
     let waves = raster.waves(reduction, first, degree.map(|degree| degree as usize + 1), wanted);

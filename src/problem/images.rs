@@ -1,7 +1,8 @@
 //! The ghosts that all pixels of a photo make.
 //!
 //! A ghost of a lens shows every light where `along` says, so those of all pixels are an image of the photo: scaled, blurred by the
-//! ghost's bell, and tinted.
+//! ghost's bell, and tinted. Where what a ghost looks like depends on where the light is, as it does behind the rims of a real lens, the
+//! photo is taken in patches, each of which has ghosts of its own.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -22,6 +23,8 @@ pub struct Image {
     pub ghost: Ghost,
     /// The ghost's centre is so many times as far from the axis as the pixel.
     pub along: f64,
+    /// Whose pixels: 0 for all of the photo's, or a patch.
+    pub patch: usize,
 }
 
 impl Image {
@@ -35,9 +38,19 @@ impl Image {
 /// A photo's light, through a lens.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Images {
-    raster: Arc<Raster>,
+    /// The photo, then its patches.
+    rasters: Vec<Arc<Raster>>,
     axis: DVec2,
     all: Vec<Image>,
+}
+
+/// A part of a photo, and what a lens makes of a light in it.
+#[derive(Debug, Clone)]
+pub struct Patch {
+    /// The light of its pixels.
+    pub raster: Arc<Raster>,
+    /// Row by row those of the whole photo's table.
+    pub ghosts: Vec<LensGhost>,
 }
 
 /// Columns of a table of all columns of pixels: some megabytes.
@@ -92,22 +105,61 @@ impl Images {
     /// Of a lens whose axis meets the picture at `axis`; every ghost `scale` times as large, and `tint` its colour. A pixel is a
     /// light of its own size, as the rule for lights has it.
     pub fn new(raster: Arc<Raster>, lens: &[LensGhost], axis: DVec2, scale: f64, tint: [f64; 3]) -> Self {
+        Self::in_patches(raster, lens, Vec::new(), axis, scale, tint)
+    }
+
+    /// The same where ghosts depend on where the light is: the patches together are the photo, and those ghosts that look alike in all of
+    /// them are the whole photo's.
+    pub fn in_patches(
+        raster: Arc<Raster>,
+        lens: &[LensGhost],
+        patches: Vec<Patch>,
+        axis: DVec2,
+        scale: f64,
+        tint: [f64; 3],
+    ) -> Self {
         let extent = EXTENT * raster.frame().pixel_sides();
-        let image = |lens: &LensGhost| {
+        let image = |lens: &LensGhost, patch: usize| {
             let ghost = lens.image(extent);
             let ghost = if scale == 1.0 { ghost } else { ghost.scaled(scale) };
             let radiance = [0, 1, 2].map(|colour| ghost.radiance[colour] * tint[colour]);
-            Image { ghost: Ghost { center: axis, radiance, ..ghost }, along: lens.along }
+            Image { ghost: Ghost { center: axis, radiance, ..ghost }, along: lens.along, patch }
         };
-        let shines = |image: &Image| image.ghost.radiance != [0.0; 3];
-        let dark = raster.flux() == [0.0; 3];
-        let all = if dark { Vec::new() } else { lens.iter().map(image).filter(shines).collect() };
-        Self { raster, axis, all }
+        let alike = |row: usize| patches.iter().all(|patch| patch.ghosts[row] == lens[row]);
+        let whole = lens.iter().enumerate().filter(|(row, _)| alike(*row)).map(|(_, ghost)| image(ghost, 0));
+        let apart = (1..).zip(&patches).flat_map(|(number, patch)| {
+            let rows = patch.ghosts.iter().enumerate().filter(|(row, _)| !alike(*row));
+            rows.map(move |(_, ghost)| image(ghost, number))
+        });
+        let images = whole.chain(apart);
+        let rasters: Vec<Arc<Raster>> =
+            std::iter::once(raster.clone()).chain(patches.iter().map(|patch| patch.raster.clone())).collect();
+        let shines = |image: &Image| {
+            let lit = |(radiance, flux): (f64, f64)| radiance != 0.0 && flux != 0.0;
+            image.ghost.radiance.into_iter().zip(rasters[image.patch].flux()).any(lit)
+        };
+        let all = images.filter(shines).collect();
+        Self { rasters, axis, all }
     }
 
     /// The photo.
     pub fn raster(&self) -> &Raster {
-        &self.raster
+        &self.rasters[0]
+    }
+
+    /// The pixels that an image is of.
+    pub fn raster_of(&self, image: &Image) -> &Raster {
+        &self.rasters[image.patch]
+    }
+
+    /// How many parts of the photo have ghosts of their own; 0 where all are the whole photo's.
+    pub fn patches(&self) -> usize {
+        self.rasters.len() - 1
+    }
+
+    /// How many ghosts there are: one of each pixel for each image.
+    pub fn count(&self) -> usize {
+        self.all.iter().map(|image| self.raster_of(image).pixels()).sum()
     }
 
     /// Where the lens's axis meets the picture.
@@ -122,23 +174,30 @@ impl Images {
 
     /// The ghost that an image would be if all of the photo's light came from the axis: no value of the image is beyond its peak.
     pub fn gathered(&self, image: &Image) -> Ghost {
-        let flux = self.raster.flux();
+        let flux = self.raster_of(image).flux();
         let radiance = [0, 1, 2].map(|colour| image.ghost.radiance[colour] * flux[colour]);
         Ghost { radiance, ..image.ghost.clone() }
     }
 
     /// Between which places the centres of an image's ghosts lie.
     pub fn centres(&self, image: &Image) -> [DVec2; 2] {
-        let (low, high) = self.raster.frame().bounds();
+        let (low, high) = self.raster_of(image).frame().bounds();
         let [one, other] = [low, high].map(|corner| self.axis + image.along * (corner - self.axis));
         [one.min(other), one.max(other)]
     }
 
     /// What of each colour's flux the ghosts carry in all.
     pub fn share(&self) -> [f64; 3] {
+        let whole = self.raster().flux();
         self.all.iter().fold([0.0; 3], |sum, image| {
-            let flux = image.ghost.flux();
-            [0, 1, 2].map(|colour| sum[colour] + flux[colour])
+            let (share, flux) = (image.ghost.flux(), self.raster_of(image).flux());
+            // Of a colour that the photo has none of, what it would be were it like the others.
+            let part = |colour: usize| match image.patch {
+                0 => 1.0,
+                _ if whole[colour] > 0.0 => flux[colour] / whole[colour],
+                _ => flux.iter().sum::<f64>() / whole.iter().sum::<f64>(),
+            };
+            [0, 1, 2].map(|colour| sum[colour] + share[colour] * part(colour))
         })
     }
 
@@ -151,7 +210,13 @@ impl Images {
     pub fn at(&self, points: &[DVec2]) -> Vec<[f64; 3]> {
         let is_product = |image: &&Image| matches!(image.ghost.bell.shape().modes(), Modes::Product(_));
         let (products, others): (Vec<&Image>, Vec<&Image>) = self.all.iter().partition(is_product);
-        let mut sums = self.of_products(&products, points);
+        let mut sums = vec![[0.0; 3]; points.len()];
+        for patch in 0..self.rasters.len() {
+            let products: Vec<&Image> = products.iter().copied().filter(|image| image.patch == patch).collect();
+            for (sum, added) in sums.iter_mut().zip(self.of_products(patch, &products, points)) {
+                [0, 1, 2].into_iter().for_each(|colour| sum[colour] += added[colour]);
+            }
+        }
         for image in others {
             for (sum, added) in sums.iter_mut().zip(self.one_by_one(image, points)) {
                 [0, 1, 2].into_iter().for_each(|colour| sum[colour] += image.ghost.radiance[colour] * added[colour]);
@@ -160,8 +225,8 @@ impl Images {
         sums
     }
 
-    /// Of bells that are products along x and y: over columns and rows apart, for all points that share them.
-    fn of_products(&self, images: &[&Image], points: &[DVec2]) -> Vec<[f64; 3]> {
+    /// Of a patch's bells that are products along x and y: over columns and rows apart, for all points that share them.
+    fn of_products(&self, patch: usize, images: &[&Image], points: &[DVec2]) -> Vec<[f64; 3]> {
         let [xs, ys] = [Places::new(points, 0), Places::new(points, 1)];
         let mut sums = vec![[0.0; 3]; points.len()];
         // As many at once as the tables of have room.
@@ -179,7 +244,7 @@ impl Images {
                 .collect();
             let across: Vec<_> = tables.iter().map(|[across, _]| across.view()).collect();
             let across = concatenate(Axis(1), &across).expect("all tables have a row for each column of pixels");
-            let along = self.raster.along_rows(across.view());
+            let along = self.rasters[patch].along_rows(across.view());
             for (number, (image, [_, down])) in images.iter().zip(&tables).enumerate() {
                 let mine = number * xs.places.len()..(number + 1) * xs.places.len();
                 for (colour, along) in along.iter().enumerate() {
@@ -197,12 +262,12 @@ impl Images {
     fn one_by_one(&self, image: &Image, points: &[DVec2]) -> Vec<[f64; 3]> {
         let (shape, size) = (image.ghost.bell.shape(), image.ghost.size);
         let [columns, rows] = self.centres_of_pixels(image);
-        let ends = image.reached();
+        let (ends, raster) = (image.reached(), self.raster_of(image));
         let at = |point: &DVec2| {
             let ((across, xs), (down, ys)) = (near(&columns, point.x, ends.x), near(&rows, point.y, ends.y));
             let mut sum = [0.0; 3];
             shape.over(&xs, &ys, size, &mut |row, values| {
-                let added = self.raster.along_row(down.start + row, across.clone(), values);
+                let added = raster.along_row(down.start + row, across.clone(), values);
                 sum.iter_mut().zip(added).for_each(|(sum, added)| *sum += added);
             });
             sum
@@ -212,7 +277,7 @@ impl Images {
 
     /// The centres of an image's ghosts of all columns of pixels, and of all rows.
     fn centres_of_pixels(&self, image: &Image) -> [Vec<f64>; 2] {
-        let places = self.raster.places();
+        let places = self.raster_of(image).places();
         let [columns, rows] = [0, 1].map(|axis| {
             let middle = self.axis[axis] + image.along * (places.middle[axis] - self.axis[axis]);
             places.from_middle[axis].iter().map(|place| middle + image.along * place).collect()

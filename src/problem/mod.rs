@@ -11,7 +11,7 @@ use crate::frame::Frame;
 use crate::reference;
 use crate::scene::Ghost;
 
-pub use images::{Image, Images};
+pub use images::{Image, Images, Patch};
 
 /// Ghosts, and the picture on which their glare lies. It never changes: a [plan](crate::plan::Plan) owns the problem that
 /// it solves, so that neither a renderer nor a certificate can be given the ghosts of another.

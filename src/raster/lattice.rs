@@ -81,7 +81,7 @@ impl Moments {
         fn of<T: Real + Into<f64>>(planes: &[Vec<Plane<T>>; 3], level: u32) -> Spectrum {
             let planes = planes.each_ref().map(|planes| &planes[level as usize - 1]);
             let points = [planes[0].width(), planes[0].height()];
-            Spectrum::new(3, points, PI, |channel, x, y| planes[channel].row(y)[x].into())
+            Spectrum::new(3, points, |channel, x, y| planes[channel].row(y)[x].into())
         }
         match self {
             Self::Single(planes) => of(planes, level),

@@ -12,6 +12,7 @@
 //! the pixels, but for that.
 
 mod lattice;
+mod parts;
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -31,6 +32,7 @@ use crate::series::frequencies::{self, Spectrum};
 pub use lattice::Reduction;
 use lattice::{Lattice, Places};
 pub(crate) use lattice::{aliasing, spline};
+pub(crate) use parts::Cell;
 
 /// Rows of pixels that are taken at a time.
 const ROWS: usize = 64;
@@ -205,9 +207,7 @@ impl Raster {
         }
         let place = (2 * level as usize + usize::from(doubles)).saturating_sub(1);
         Some(self.spectra[place].get_or_init(|| match level {
-            0 => Spectrum::new(3, self.size(), frequencies::FASTEST, |channel, x, y| {
-                f64::from(self.channels[channel].plane.row(y)[x])
-            }),
+            0 => Spectrum::new(3, self.size(), |channel, x, y| f64::from(self.channels[channel].plane.row(y)[x])),
             _ => self.moments(doubles).spectrum(level),
         }))
     }

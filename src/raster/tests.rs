@@ -68,7 +68,7 @@ fn moments_have_the_waves_of_the_pixels_within_the_bound() {
                         let q = theta / (reduction.pitch() * frame.pixel_sides());
                         let (truth, sums) = (waves(&pixels, frame, q), from_raster(&raster, reduction, q));
                         let [x, y] = if level == 0 { [0.0; 2] } else { [aliasing(theta.x), aliasing(theta.y)] };
-                        let gain = (spline(theta.x) * spline(theta.y)).recip();
+                        let gain = if level == 0 { 1.0 } else { (spline(theta.x) * spline(theta.y)).recip() };
                         let [across, down] = reduction.off();
                         let bound = x + y + x * y + gain * (reduction.rounding() + 1e-12 + 2.0 * (across + down));
                         for colour in 0..3 {

@@ -15,6 +15,7 @@ mod lit;
 mod nearest;
 mod number;
 mod optical;
+pub(crate) mod patches;
 pub mod presets;
 mod recover;
 mod referred;

@@ -83,7 +83,7 @@ impl<'a> Subject<'a> {
 
     /// How many ghosts it has, those of all pixels too.
     fn ghosts(&self) -> usize {
-        let images = self.images.as_ref().map_or(0, |images| images.raster().pixels() * images.all().len());
+        let images = self.images.as_ref().map_or(0, |images| images.count());
         self.ghosts.len() + images
     }
 }
