@@ -2,13 +2,21 @@
 
 use std::sync::Arc;
 
-use super::{Look, LookLights};
+use super::{Look, LookLens, LookLights};
 use crate::choices::{Mix, Sources};
 use crate::frame::Frame;
 use crate::photo::Photo;
-use crate::problem::{Images, Problem};
-use crate::raster::Raster;
+use crate::problem::{Images, Patch, Problem};
+use crate::raster::{Cell, Raster};
+use crate::scene::patches::{self, Spot};
 use crate::scene::{self, Emission, FindOptions, Found, Ghost, Knee, Lens, Light, Recovered, Recovery};
+
+/// Cells along the longer side of a photo, of which its patches are made.
+const CELLS: u32 = 48;
+
+/// Patches of a photo, at most; and how close light lies in them where fewer do, in the unit of lengths.
+const MOST_PATCHES: usize = 4;
+const CLOSE: f64 = 0.15;
 
 /// What glares in one photo.
 pub struct Gathered {
@@ -39,7 +47,7 @@ impl Gathered {
 
     /// How many ghosts there are, those of all pixels too.
     pub fn count(&self) -> usize {
-        let images = self.images.as_ref().map_or(0, |images| images.raster().pixels() * images.all().len());
+        let images = self.images.as_ref().map_or(0, |images| images.count());
         self.ghosts.len() + images
     }
 
@@ -116,9 +124,33 @@ impl Look {
     pub fn images(&self, raster: impl FnOnce() -> Arc<Raster>) -> Option<Arc<Images>> {
         let of = |raster: Arc<Raster>| {
             let look = self.fitted(&raster.frame());
-            Arc::new(Images::new(raster, look.lens_ghosts(), self.axis, self.size, self.tint))
+            let patches = look.patches(&raster);
+            Arc::new(Images::in_patches(raster, look.lens_ghosts(), patches, self.axis, self.size, self.tint))
         };
         self.takes_photo().then(|| of(raster()))
+    }
+
+    /// The parts of a photo in which lights have ghosts of their own, where the lens's rims cut them by where the light is.
+    fn patches(&self, raster: &Raster) -> Vec<Patch> {
+        let LookLens::Optical(optical) = &self.lens else { return Vec::new() };
+        let window = raster.frame().window;
+        let side = window.width.max(window.height).div_ceil(CELLS).max(1);
+        let cells = raster.cells(side as usize);
+        let columns = cells.ncols();
+        let spots: Vec<Spot> = cells.iter().map(|&Cell { light, place }| Spot { place, light }).collect();
+        let patch = |group: Vec<usize>| {
+            let along = |cell: fn(usize, usize) -> usize| {
+                let cells = group.iter().map(|&index| cell(index, columns) as u32);
+                let (first, last) = cells.fold((u32::MAX, 0), |(first, last), cell| (first.min(cell), last.max(cell)));
+                (first * side, (last + 1) * side)
+            };
+            let ((left, right), (top, lower)) =
+                (along(|index, columns| index % columns), along(|index, columns| index / columns));
+            let window = window.part(left, top, right.min(window.width) - left, lower.min(window.height) - top);
+            let ghosts = optical.ghosts_at(patches::middle(&spots, &group) - self.axis);
+            Patch { raster: raster.part(window), ghosts }
+        };
+        patches::together(&spots, MOST_PATCHES, CLOSE).into_iter().map(patch).collect()
     }
 
     /// What glares in a photo of which `found` is known, on its frame.
@@ -154,8 +186,9 @@ impl Look {
     /// The ghosts that the lens makes of `lights`, then those that no light makes, in the look's size and tint; those of a lens that is
     /// known by its surfaces on the picture that it was fitted to.
     pub fn ghosts(&self, lights: &[Light]) -> Vec<Ghost> {
-        let mut ghosts = match self.lens_ghosts() {
-            [] => Vec::new(),
+        let mut ghosts = match (self.lens_ghosts(), &self.lens) {
+            ([], _) => Vec::new(),
+            (_, LookLens::Optical(optical)) => optical.ghosts_of(lights, self.axis),
             _ => scene::ghosts(lights, &self.lens(), self.axis),
         };
         ghosts.extend_from_slice(&self.ghosts);
@@ -182,6 +215,34 @@ mod tests {
     use crate::look::LookLens;
     use crate::scene::LensGhost;
     use crate::series::Bell;
+
+    /// Of a photo with one lamp each patch that has light has it at its middle, so that pixels make the lamp's ghosts, cut as they are.
+    #[test]
+    fn a_lamp_in_a_photo_has_the_ghosts_that_it_has_as_a_light() {
+        let frame = Frame::full(64, 36);
+        let lamp = [57, 4];
+        let mut pixels = vec![[0.0, 0.0, 0.0, 1.0]; frame.window.pixels()];
+        pixels[(lamp[1] * 64 + lamp[0]) as usize] = [3.0, 2.0, 1.0, 1.0];
+        let raster = Raster::new(&pixels, frame).unwrap();
+        let flux = raster.flux();
+        let look = Look { lens: LookLens::preset("double-gauss").unwrap(), ..Look::default() };
+        let images = look.images(|| raster).unwrap();
+        let position = frame.position(f64::from(lamp[0]), f64::from(lamp[1]));
+        let size = 0.288_675_134_594_812_9 * frame.pixel_sides().x;
+        let fitted = look.fitted(&frame);
+        let ghosts = fitted.ghosts(&[Light { position, flux, size, muted: false }]);
+        let whole = fitted.lens_ghosts().iter().map(|row| row.share * row.tint[1]).sum::<f64>();
+        assert!(images.share()[1] < 0.7 * whole, "{} {whole}: it is in a corner", images.share()[1]);
+        let points: Vec<DVec2> =
+            (0..60).map(|k| frame.position(f64::from(k * 37 % 64), f64::from(k * 23 % 36))).collect();
+        let found = images.at(&points);
+        let wanted = crate::reference::direct_at(&ghosts, &points);
+        let largest = wanted.iter().map(|value| value[1]).fold(0.0, f64::max);
+        for (found, wanted) in found.iter().zip(&wanted) {
+            // What is below 1e-10 of a bell's peak is left out of pixels' sums.
+            assert!((found[1] - wanted[1]).abs() < 1e-8 * largest, "{found:?} {wanted:?}");
+        }
+    }
 
     #[test]
     fn size_keeps_the_flux_of_every_bell_and_tint_scales_it() {

@@ -15,7 +15,9 @@ use glam::DVec2;
 use crate::choices::{Evaluator, LengthUnit, Mix, Normalize, Sources};
 use crate::frame::Frame;
 use crate::scene::presets::{self, DEFAULT_PRESET};
-use crate::scene::{FindOptions, Ghost, Goal, Lens, LensGhost, LensVeil, Light, NamedLens, Optical};
+use crate::scene::{
+    FindOptions, Ghost, Goal, Lens, LensGhost, LensVeil, Light, NamedLens, Optical, OpticsSection, lenses,
+};
 use crate::{Error, Result};
 
 pub use gather::{Gathered, Search};
@@ -135,12 +137,27 @@ impl From<NamedLens> for LookLens {
 }
 
 impl LookLens {
-    /// The preset that is called `name`.
+    /// The preset that is called `name`, or the real lens, as its file has it; of two that are called alike, the preset.
     ///
     /// # Errors
     /// [`crate::Error::UnknownPreset`], which lists the names there are.
     pub fn preset(name: &str) -> Result<Self> {
-        presets::named(name).map(|lens| Self::Preset(Arc::new(lens)))
+        Self::preset_set(name, &OpticsSection::default())
+    }
+
+    /// The same, a real lens set as `settings` says.
+    ///
+    /// # Errors
+    /// [`crate::Error::UnknownPreset`]; [`Error::Optics`] and [`Error::Usage`] for settings that cannot be, and of a preset that is none.
+    pub fn preset_set(name: &str, settings: &OpticsSection) -> Result<Self> {
+        let lens = match presets::named(name) {
+            Err(unknown) if lenses::find(name).is_err() => return Err(unknown),
+            Err(_) => {
+                NamedLens::Optical(Optical::new(OpticsSection { lens: Some(name.to_owned()), ..settings.clone() })?)
+            }
+            Ok(lens) => NamedLens::preset(lens, settings)?,
+        };
+        Ok(lens.into())
     }
 
     /// What it makes of a light.

@@ -74,6 +74,28 @@ pub fn common_area(clips: &[Clip], tangent: f64) -> f64 {
     places.windows(2).map(piece).sum::<f64>().max(0.0)
 }
 
+/// The abscissa of the centroid of what all circles have in common, for light of this tangent; that of the first circle's centre where they
+/// have nothing in common.
+pub fn common_middle(clips: &[Clip], tangent: f64) -> f64 {
+    /// Strips, whose midpoints are off by less than some thousandth of a radius.
+    const STRIPS: u32 = 256;
+    let circles = || clips.iter().map(|clip| (clip.center_per_tangent * tangent, clip.radius));
+    let low = circles().map(|(centre, radius)| centre - radius).fold(f64::NEG_INFINITY, f64::max);
+    let high = circles().map(|(centre, radius)| centre + radius).fold(f64::INFINITY, f64::min);
+    let first = circles().next().map_or(0.0, |(centre, _)| centre);
+    if low.is_nan() || high.is_nan() || low >= high || clips.is_empty() {
+        return first;
+    }
+    let strip = |k: u32| {
+        let x = low + (high - low) * (f64::from(k) + 0.5) / f64::from(STRIPS);
+        let square = |(centre, radius): (f64, f64)| (radius - (x - centre)) * (radius + (x - centre));
+        (x, circles().map(square).fold(f64::INFINITY, f64::min).max(0.0).sqrt())
+    };
+    let (moment, area) =
+        (0..STRIPS).map(strip).fold((0.0, 0.0), |(moment, area), (x, height)| (moment + x * height, area + height));
+    if area > 0.0 { moment / area } else { first }
+}
+
 /// The area of a circle about the origin up to the abscissa `x`, counted from 0.
 fn segment(radius: f64, x: f64) -> f64 {
     let sine = (x / radius).clamp(-1.0, 1.0);
@@ -127,6 +149,24 @@ mod tests {
             let found = common_area(&clips, tangent);
             assert!((found - counted as f64 * step * step).abs() < 1e-4, "{tangent}: {found}");
         }
+    }
+
+    #[test]
+    fn the_middle_is_where_a_grid_has_it() {
+        let clips = [clip(0.0, 1.0), clip(0.8, 1.1), clip(-0.5, 1.4), clip(2.0, 2.4)];
+        for tangent in [0.0, 0.2, 0.6, 1.0] {
+            let step = 2e-3;
+            let within = |x: f64, y: f64| {
+                clips.iter().all(|clip| (x - clip.center_per_tangent * tangent).hypot(y) <= clip.radius)
+            };
+            let grid = (-700..700).flat_map(|j| (-700..700).map(move |i| (f64::from(i) * step, f64::from(j) * step)));
+            let inside: Vec<f64> = grid.filter(|(x, y)| within(*x, *y)).map(|(x, _)| x).collect();
+            let wanted = inside.iter().sum::<f64>() / inside.len() as f64;
+            let found = common_middle(&clips, tangent);
+            assert!((found - wanted).abs() < 3e-3, "{tangent}: {found} {wanted}");
+        }
+        assert_eq!(common_middle(&[clip(0.5, 1.0), clip(9.0, 1.0)], 1.0), 0.5);
+        assert_eq!(common_middle(&[], 1.0), 0.0);
     }
 
     #[test]

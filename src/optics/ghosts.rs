@@ -14,7 +14,7 @@ mod survey;
 
 use serde::Serialize;
 
-use super::clip::{Clip, common_area, that_bite};
+use super::clip::{Clip, common_area, common_middle, that_bite};
 use super::error::{OpticsError, Result};
 use super::matrix::RayMatrix;
 use super::path::Path;
@@ -85,6 +85,12 @@ impl GhostPath {
         let narrowest = self.clips.first().map_or(0.0, |clip| clip.center_per_tangent);
         let apart = (clip.center_per_tangent - narrowest) * tangent;
         (magnification * image + scale * apart, scale.abs() * clip.radius)
+    }
+
+    /// How far the middle of what rims leave is from the centre of the ghost, on the sensor, towards the light's own image, in mm; of green.
+    pub fn shift(&self, tangent: f64) -> f64 {
+        let narrowest = self.clips.first().map_or(0.0, |clip| clip.center_per_tangent);
+        self.scale[1] * (common_middle(&self.clips, tangent) - narrowest * tangent)
     }
 
     fn mean_share(&self) -> f64 {

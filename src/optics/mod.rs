@@ -35,7 +35,7 @@ mod system;
 mod thin_film;
 mod trace;
 
-pub use clip::{Clip, common_area};
+pub use clip::{Clip, common_area, common_middle};
 pub use coating::{Coating, DESIGN_NM};
 pub use colour::Sensitivity;
 pub use error::{OpticsError, Result};

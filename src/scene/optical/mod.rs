@@ -6,11 +6,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use glam::DVec2;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::lens::{Lens, LensVeil};
 use super::veil::VeilSection;
-use super::{lenses, presets};
+use super::{Ghost, LensGhost, Light, lenses, presets};
 use crate::frame::Frame;
 use crate::optics::{Coating, GhostOptions, LensFormat, LensGhosts, Prescription, Setup, System};
 use crate::psf::{Name, Parameters};
@@ -57,7 +59,12 @@ pub struct Optical {
     /// What a unit of lengths on the picture is on the sensor.
     millimetres: f64,
     lens: Arc<Lens>,
+    /// Of each row of the table, which of the lens's ghosts it is.
+    paths: Arc<[usize]>,
 }
+
+/// Lights whose ghosts have the outline that rims leave; those of more have their light and their middle.
+const MOST_CUT: usize = 4;
 
 impl PartialEq for Optical {
     /// Whichever picture it was fitted to; and looks are compared again and again.
@@ -163,13 +170,15 @@ impl Optical {
     }
 
     fn fit(section: OpticsSection, made: Arc<Made>, millimetres: f64) -> Self {
+        let rows = rows::rows(&made.ghosts, &made.opening, millimetres);
+        let paths = rows.iter().map(|row| row.ghost).collect();
         let lens = Lens {
             name: made.name.clone(),
             description: made.prescription.description.clone(),
-            ghosts: rows::rows(&made.ghosts, &made.opening, millimetres),
+            ghosts: rows.into_iter().map(|row| row.lens).collect(),
             veil: made.veil.clone(),
         };
-        Self { section, made, millimetres, lens: lens.into() }
+        Self { section, made, millimetres, paths, lens: lens.into() }
     }
 
     /// The same on a picture: the longer side of the sensor is what the picture's longer side spans.
@@ -185,6 +194,47 @@ impl Optical {
     /// The table of its ghosts, in the unit of the picture that it was fitted to.
     pub fn lens(&self) -> &Arc<Lens> {
         &self.lens
+    }
+
+    /// The table for lights that lie at `place`, counted from the axis in the unit of the picture that it was fitted to: the same rows,
+    /// each with what the rims of the lens leave of it. A row of which nothing is left has no share.
+    pub fn ghosts_at(&self, place: DVec2) -> Vec<LensGhost> {
+        let (tangent, towards) = self.direction(place);
+        let at = |(row, path): (&LensGhost, &usize)| rows::cut(row, &self.made.ghosts.ghosts[*path], tangent, towards);
+        self.lens.ghosts.par_iter().zip(&*self.paths).map(at).collect()
+    }
+
+    /// The ghosts of all lights that are not muted, light by light in the table's order, as rims leave them. Of more than a few lights each
+    /// has outlines of its own, which no two share and a series would have to transform one by one: then ghosts keep their whole outline,
+    /// about the middle of what is left, with the light of that.
+    pub fn ghosts_of(&self, lights: &[Light], axis: DVec2) -> Vec<Ghost> {
+        let shining: Vec<&Light> = lights.iter().filter(|light| !light.muted).collect();
+        if shining.len() <= MOST_CUT {
+            let of = |light: &Light| -> Vec<Ghost> {
+                let table = self.ghosts_at(light.position - axis);
+                table.iter().map(|ghost| ghost.of(light, axis)).collect()
+            };
+            return shining.into_iter().flat_map(of).collect();
+        }
+        shining.par_iter().flat_map_iter(|light| self.dimmed(light, axis)).collect()
+    }
+
+    /// The ghosts of a light, whole, each about the middle of what rims leave and with the light of that.
+    fn dimmed<'a>(&'a self, light: &'a Light, axis: DVec2) -> impl Iterator<Item = Ghost> + 'a {
+        let (tangent, towards) = self.direction(light.position - axis);
+        let of = move |(row, path): (&LensGhost, &usize)| {
+            let path = &self.made.ghosts.ghosts[*path];
+            let left = path.vignetting(tangent).clamp(0.0, 1.0);
+            let ghost = row.of(light, axis);
+            let center = ghost.center + path.shift(tangent) / self.millimetres * towards;
+            Ghost { center, radiance: ghost.radiance.map(|radiance| left * radiance), ..ghost }
+        };
+        self.lens.ghosts.iter().zip(&*self.paths).map(of)
+    }
+
+    /// The tangent of the angle of light from a place, and the direction of that from the axis.
+    fn direction(&self, place: DVec2) -> (f64, DVec2) {
+        (place.length() * self.millimetres / self.made.ghosts.image_per_tangent, place.normalize_or_zero())
     }
 
     /// The f-number that it is set to.
@@ -238,6 +288,17 @@ pub enum NamedLens {
     Optical(Optical),
 }
 
+impl NamedLens {
+    /// A preset, of which nothing is set.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where something is.
+    pub fn preset(lens: Lens, settings: &OpticsSection) -> Result<Self> {
+        without_surfaces(&lens.name, settings)?;
+        Ok(Self::Preset(lens))
+    }
+}
+
 /// The lens that a name or a path means, set as `settings` says: a file where there is one, else a real lens of that name, or a
 /// preset. What a file is, its content tells.
 ///
@@ -255,8 +316,7 @@ pub fn named_lens(name: &Path, settings: &OpticsSection) -> Result<NamedLens> {
         OpticsSection { file: Some(name.to_owned()), ..settings.clone() }
     } else if let Err(unknown) = lenses::find(&text) {
         let Ok(preset) = presets::named(&text) else { return Err(unknown) };
-        without_surfaces(&text, settings)?;
-        return Ok(NamedLens::Preset(preset));
+        return NamedLens::preset(preset, settings);
     } else {
         OpticsSection { lens: Some(text.into_owned()), ..settings.clone() }
     };

@@ -2,15 +2,18 @@
 //!
 //! A ghost of a distant light is its opening, out of focus: evenly bright, with the shape that the iris has and an edge that diffraction
 //! softens. Fresnel's fringes of an edge that is d from focus are √(λ d) wide on the sensor.
+//!
+//! Off the axis the rims of the lens cut it: on the sensor each is a circle whose centre goes with the light's direction, and the narrowest
+//! of them is the opening itself.
 
 use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
 use glam::DVec2;
 
-use crate::optics::{FirstOrder, GhostPath, Iris as Blades, LensGhosts};
+use crate::optics::{Clip, FirstOrder, GhostPath, Iris as Blades, LensGhosts};
 use crate::scene::LensGhost;
-use crate::series::{Bell, Iris};
+use crate::series::{Bell, Cut, Iris};
 
 /// The edges that an [`Iris`] is given, over its radius: real ghosts have aberrations, too, and sharper ones cost a photo more
 /// harmonics than they show. The softest is one that is no edge any more.
@@ -93,9 +96,47 @@ impl Opening {
     }
 }
 
+/// A row of the table, and the ghost that it is of, by its place in the lens's list.
+pub(super) struct Row {
+    pub ghost: usize,
+    pub lens: LensGhost,
+}
+
 /// The rows of all ghosts that have any light, where a unit of lengths is so many mm on the sensor.
-pub(super) fn rows(table: &LensGhosts, opening: &Opening, unit: f64) -> Vec<LensGhost> {
-    table.ghosts.iter().flat_map(|ghost| of_ghost(ghost, opening, unit)).collect()
+pub(super) fn rows(table: &LensGhosts, opening: &Opening, unit: f64) -> Vec<Row> {
+    let of = |(number, ghost)| of_ghost(ghost, opening, unit).into_iter().map(move |lens| Row { ghost: number, lens });
+    table.ghosts.iter().enumerate().flat_map(of).collect()
+}
+
+/// The row of a ghost of a light on the axis, for a light at a tangent of its angle in the direction of a unit vector: with what rims
+/// leave of the ghost's shape and of its light.
+pub(super) fn cut(row: &LensGhost, ghost: &GhostPath, tangent: f64, towards: DVec2) -> LensGhost {
+    let left = ghost.vignetting(tangent).clamp(0.0, 1.0);
+    let (bell, left) = match &row.bell {
+        Bell::Iris(iris) => match iris.cut(&rims(ghost, iris.edge(), tangent, towards)) {
+            Some(iris) => (Bell::Iris(iris), left),
+            None => (row.bell.clone(), 0.0),
+        },
+        other => (other.clone(), left),
+    };
+    LensGhost { bell, share: row.share * left, ..row.clone() }
+}
+
+/// All but the narrowest, in its radii and from its centre.
+///
+/// A rim that just touches the opening would take half of what the opening's own edge leaves there. So one that hardly bites lies a few
+/// edges farther out, and ghosts change smoothly as it comes in.
+fn rims(ghost: &GhostPath, edge: f64, tangent: f64, towards: DVec2) -> Vec<Cut> {
+    const FARTHER: f64 = Cut::SPARED;
+    let Some((narrowest, others)) = ghost.clips.split_first() else { return Vec::new() };
+    let rim = |clip: &Clip| {
+        let apart = (clip.center_per_tangent - narrowest.center_per_tangent) * tangent;
+        let centre = ghost.scale[1].signum() * apart / narrowest.radius * towards;
+        let radius = clip.radius / narrowest.radius;
+        let bites = (centre.length() + 1.0 - radius).max(0.0);
+        Cut { centre, radius: radius + FARTHER * edge * (-bites / (FARTHER * edge)).exp() }
+    };
+    others.iter().map(rim).collect()
 }
 
 /// A row for all colours where they lie at one place, and one for each where dispersion moves or scales them.

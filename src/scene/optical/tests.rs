@@ -43,6 +43,104 @@ fn the_longer_side_of_a_sensor_is_that_of_the_picture() {
     assert!((largest / wide - 2.0).abs() < 0.05, "{largest} {wide}");
 }
 
+/// At the middle of the picture no rim but the narrowest bites; off it the light is what `vignetting` has of each ghost.
+#[test]
+fn rims_cut_the_ghosts_of_lights_off_the_axis() {
+    let optical = Optical::new(lens("double-gauss")).unwrap().fitted(&Frame::full(1920, 1080));
+    assert_eq!(optical.ghosts_at(DVec2::ZERO), optical.lens().ghosts);
+    let total = |rows: &[LensGhost]| shares(rows).into_iter().sum::<f64>();
+    let whole = total(&optical.lens().ghosts);
+    // As far as 10 and 20 degrees, in half heights of a picture 36 mm wide.
+    let place =
+        |degrees: f64| optical.ghosts().image_per_tangent * degrees.to_radians().tan() / (18.0 * 1080.0 / 1920.0);
+    for (degrees, left) in [(10.0, 0.77), (20.0, 0.40)] {
+        for towards in [DVec2::X, DVec2::from_angle(2.0)] {
+            let rows = optical.ghosts_at(place(degrees) * towards);
+            assert!((total(&rows) / whole - left).abs() < 0.03, "{degrees}: {}", total(&rows) / whole);
+        }
+    }
+    let rows = optical.ghosts_at(DVec2::new(place(15.0), 0.0));
+    let cuts = |row: &&LensGhost| matches!(&row.bell, Bell::Iris(iris) if !iris.cuts().is_empty());
+    assert!(rows.iter().filter(cuts).count() > 20);
+    // What is cut off lies towards or away from the axis: halves above and below are alike.
+    for row in rows.iter().filter(cuts) {
+        let light = Light { position: DVec2::new(place(15.0), 0.0), flux: [1.0; 3], size: 0.0, muted: false };
+        let ghost = row.of(&light, DVec2::ZERO);
+        let value = |x: f64, y: f64| ghost.bell.shape().value(DVec2::new(x, y) * ghost.size, ghost.size);
+        for (x, y) in [(0.3, 0.4), (-0.6, 0.5), (0.8, 0.1)] {
+            assert!((value(x, y) - value(x, -y)).abs() < 1e-12);
+        }
+    }
+}
+
+/// A lamp that crosses the picture: no ghost jumps in light or in shape, as rims come and go, by more than its way explains.
+#[test]
+fn ghosts_of_a_lamp_that_crosses_the_picture_change_smoothly() {
+    for name in ["double-gauss", "sonnar", "retrofocus"] {
+        let optical = Optical::new(lens(name)).unwrap().fitted(&Frame::full(1920, 1080));
+        let at = |x: f64| optical.ghosts_at(DVec2::new(x, 0.3));
+        let step = 0.002;
+        let value = |row: &LensGhost, x: f64, y: f64| {
+            let shape = row.bell.shape();
+            row.share * shape.value(DVec2::new(x, y), DVec2::ONE) / shape.integral(DVec2::ONE)
+        };
+        for place in (-12..12).map(|k| 0.15 * f64::from(k)) {
+            let (before, after) = (at(place), at(place + step));
+            for (number, (one, other)) in before.iter().zip(&after).enumerate() {
+                let whole = optical.lens().ghosts[number].share;
+                assert!(
+                    (one.share - other.share).abs() < 0.03 * whole,
+                    "{name} {number} at {place}: {one:?} {other:?}"
+                );
+                for (x, y) in [(0.0, 0.0), (0.7, 0.0), (0.0, 0.7), (-0.7, 0.0), (0.5, -0.5), (-0.9, 0.3)] {
+                    let change = (value(one, x, y) - value(other, x, y)).abs();
+                    assert!(change < 0.12 * whole, "{name} {number} at {place}, {x} {y}: {change} of {whole}");
+                }
+            }
+        }
+    }
+}
+
+/// Of few lights each ghost has the outline that rims leave, of many the light and the middle.
+#[test]
+fn many_lights_have_ghosts_of_the_light_and_the_middle_that_few_have() {
+    let optical = Optical::new(lens("tessar")).unwrap().fitted(&Frame::full(1920, 1080));
+    let light = |k: usize| {
+        let position = DVec2::new(-1.7 + 3.4 * (k as f64 * 0.618).fract(), -0.9 + 1.8 * (k as f64 * 0.377).fract());
+        Light { position, flux: [1.0, 2.0, 3.0], size: 0.0, muted: k % 5 == 4 }
+    };
+    let (axis, rows) = (DVec2::new(0.1, -0.05), optical.lens().ghosts.len());
+    let many: Vec<Light> = (0..20).map(light).collect();
+    let ghosts = optical.ghosts_of(&many, axis);
+    assert_eq!(ghosts.len(), 16 * rows);
+    let shining: Vec<Light> = many.into_iter().filter(|light| !light.muted).collect();
+    let mut cut = 0;
+    for (few, ghosts) in shining.chunks(MOST_CUT).zip(ghosts.chunks(MOST_CUT * rows)) {
+        for (one, whole) in optical.ghosts_of(few, axis).iter().zip(ghosts) {
+            assert!(
+                one.flux().iter().zip(whole.flux()).all(|(a, b)| (a - b).abs() < 1e-9 * b + 1e-15),
+                "{one:?} {whole:?}"
+            );
+            let Bell::Iris(iris) = &one.bell else { continue };
+            if iris.cuts().is_empty() || one.flux()[1] == 0.0 {
+                continue;
+            }
+            // The centroid, from values on a lattice.
+            let (mut sum, mut moment) = (0.0, DVec2::ZERO);
+            for (i, j) in (-60..=60).flat_map(|j| (-60..=60).map(move |i| (i, j))) {
+                let at = 0.025 * DVec2::new(f64::from(i), f64::from(j));
+                let value = one.bell.shape().value(at, DVec2::ONE);
+                (sum, moment) = (sum + value, moment + value * at);
+            }
+            let middle = one.center + moment / sum * one.size;
+            let apart = (middle - whole.center).length() / one.size.x;
+            assert!(apart < 0.15 + 2.0 * iris.edge(), "{apart} radii: {iris:?}");
+            cut += 1;
+        }
+    }
+    assert!(cut > 40, "{cut}");
+}
+
 #[test]
 fn blades_show_where_the_lens_is_stopped_down() {
     let blades = |section: OpticsSection| {
