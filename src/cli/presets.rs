@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::Result;
 use crate::scene::presets::{self, DEFAULT_PRESET};
-use crate::scene::{Lens, VeilFunction};
+use crate::scene::{Lens, Optical, OpticsSection, VeilFunction, lenses};
 use crate::terminal::stdout;
 
 /// List the lenses that come with vglare, or print one of them
@@ -29,6 +29,9 @@ pub struct Args {
     json: bool,
 }
 
+/// The last preset of the list.
+const LAST: &str = "eye";
+
 const EXAMPLES: &str = "\
 Examples:
   vglare presets                           What is there?
@@ -42,12 +45,26 @@ Examples:
 /// [`crate::Error::UnknownPreset`], or where standard output cannot be written.
 pub fn run(args: &Args) -> Result<()> {
     if let Some(name) = &args.name {
-        let preset = presets::find(name)?;
-        return stdout::print(|out| out.write_all(preset.toml.as_bytes()));
+        let toml = match lenses::find(name) {
+            Ok(real) if presets::find(name).is_err() => real.toml,
+            _ => presets::find(name)?.toml,
+        };
+        return stdout::print(|out| out.write_all(toml.as_bytes()));
     }
     let older = if args.all { presets::of_version_1() } else { &[] };
-    let lenses = presets::all().iter().chain(older).map(|preset| preset.lens()).collect::<Result<Vec<_>>>()?;
+    let mut lenses = presets::all().iter().chain(older).map(|preset| preset.lens()).collect::<Result<Vec<_>>>()?;
+    lenses.extend(real()?);
     if args.json { stdout::json(|out| json(out, &lenses)) } else { stdout::print(|out| table(out, &lenses)) }
+}
+
+/// The tables of real lenses that no preset is called like, wide open on a picture of their sensor's shape.
+fn real() -> Result<Vec<Lens>> {
+    let named = lenses::all().iter().map(|lens| lens.name).filter(|name| presets::find(name).is_err());
+    let lens = |name: &str| {
+        let section = OpticsSection { lens: Some(name.to_owned()), ..OpticsSection::default() };
+        Ok(Lens::clone(Optical::new(section)?.lens()))
+    };
+    named.map(lens).collect()
 }
 
 #[derive(Serialize)]
@@ -104,7 +121,8 @@ fn table(out: &mut dyn Write, lenses: &[Lens]) -> io::Result<()> {
     table.column_iter_mut().skip(1).take(3).for_each(|column| column.set_cell_alignment(CellAlignment::Right));
     writeln!(
         out,
-        "{}\n\nWhere no lens is named, it is {DEFAULT_PRESET}. Those of looks of version 1 are called v1/NAME: --all lists them.",
+        "{}\n\nWhere no lens is named, it is {DEFAULT_PRESET}. Those after {LAST} are real lenses, by their surfaces: vglare lens tells more of \
+         them. Those of looks of version 1 are called v1/NAME: --all lists them.",
         table.trim_fmt()
     )
 }
@@ -112,6 +130,13 @@ fn table(out: &mut dyn Write, lenses: &[Lens]) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn real_lenses_are_listed_once_by_their_names() {
+        let real = real().unwrap();
+        assert!(real.iter().any(|lens| lens.name == "tessar" && lens.ghosts.len() > 10 && lens.veil.is_some()));
+        assert!(real.iter().all(|lens| lens.name != "zoom"), "a preset is called so");
+    }
 
     #[test]
     fn the_list_names_every_preset_and_the_default() {

@@ -70,10 +70,7 @@ impl SceneArgs {
     fn lens(&self) -> Result<Option<LookLens>> {
         let lens = match (&self.lens, &self.preset) {
             (Some(name), _) => self.optics.lens(name)?.into(),
-            (None, Some(name)) => {
-                self.optics.without_lens()?;
-                LookLens::preset(name)?
-            }
+            (None, Some(name)) => LookLens::preset_set(name, &self.optics.section())?,
             (None, None) => return Ok(None),
         };
         Ok(Some(lens))

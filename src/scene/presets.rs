@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use super::file;
 use super::lens::Lens;
 use super::sections::Version;
+use super::{file, lenses};
 use crate::{Error, Result};
 
 /// A lens file that is compiled in.
@@ -96,11 +96,12 @@ const V1: &str = "v1/";
 ///
 /// # Errors
 ///
-/// [`Error::UnknownPreset`], which lists the names there are.
+/// [`Error::UnknownPreset`], which lists the names there are, those of real lenses too.
 pub fn find(name: &str) -> Result<&'static Preset> {
-    let list = if name.starts_with(V1) { &VERSION_1[..] } else { &PRESETS };
+    let (list, real) = if name.starts_with(V1) { (&VERSION_1[..], &[][..]) } else { (&PRESETS[..], lenses::all()) };
     let found = list.iter().find(|preset| preset.name == name);
-    found.ok_or_else(|| unknown(name, list.iter().map(|preset| preset.name)))
+    let real = real.iter().map(|lens| lens.name).filter(|name| list.iter().all(|preset| preset.name != *name));
+    found.ok_or_else(|| unknown(name, list.iter().map(|preset| preset.name).chain(real)))
 }
 
 fn unknown<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Error {

@@ -9,10 +9,10 @@ use toml::{Spanned, Value};
 
 use super::bells::{BellKeys, BellName, Bells, Fault, ProfileTable};
 use super::number::{Degree, Finite, NotNegative, Number, Positive, Sizes, plain};
-use super::presets;
 use super::sections::{AccuracyTable, FindSection, LookSection, Version};
 use super::veil::{VeilTable, absolute};
 use super::{Ghost, LensGhost, Light, Optical, OpticsSection};
+use super::{lenses, presets};
 use crate::choices::LengthUnit;
 
 /// The version of a scene file, whatever else is in it: one that is not known may have other keys.
@@ -175,6 +175,10 @@ impl SceneTable {
         let fault = |message: String| Fault { span: preset.span(), message };
         if !self.lens_ghosts.is_empty() {
             return Err(fault("expected either `preset` or [[lens_ghost]], found both".into()));
+        }
+        if version == Version::Two && presets::named(preset.as_ref()).is_err() && lenses::find(preset.as_ref()).is_ok()
+        {
+            return Ok(Some(preset.as_ref().clone()));
         }
         let found = presets::named_in(version, preset.as_ref()).map_err(|error| fault(error.to_string()))?;
         Ok(Some(found.name))

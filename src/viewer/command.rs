@@ -8,7 +8,7 @@ use crate::look::{Look, LookLens};
 use crate::options::BackendChoice;
 use crate::options::ReadArgs;
 use crate::scene::presets::DEFAULT_PRESET;
-use crate::scene::read_scene;
+use crate::scene::{OpticsSection, named_lens, read_scene};
 use crate::{Result, viewer};
 
 /// Open photos in a window, where the glare can be set by hand and seen at once
@@ -22,8 +22,12 @@ pub struct Args {
     photos: Vec<PathBuf>,
 
     /// The lens that photos are opened with, one of `vglare presets`
-    #[arg(long, value_name = "NAME", default_value = DEFAULT_PRESET, conflicts_with = "scene")]
+    #[arg(long, value_name = "NAME", default_value = DEFAULT_PRESET, conflicts_with_all = ["scene", "lens"])]
     preset: String,
+
+    /// The lens that photos are opened with: the name of a real lens or a preset, or a file, of surfaces or of ghosts
+    #[arg(long, value_name = "NAME|FILE", conflicts_with = "scene")]
+    lens: Option<PathBuf>,
 
     /// The look that photos are opened with, as a scene file; see docs/scenes.md
     #[arg(long, value_name = "FILE")]
@@ -58,10 +62,11 @@ pub struct Args {
 /// # Errors
 /// Those of [`viewer::run`], that of an unknown preset, and those of [`read_scene`].
 pub fn run(args: &Args) -> Result<()> {
-    let look = match &args.scene {
-        Some(path) => Look::from_scene(read_scene(path)?)?,
+    let look = match (&args.scene, &args.lens) {
+        (Some(path), _) => Look::from_scene(read_scene(path)?)?,
         // A lens brings its veil along.
-        None => Look::default().through(LookLens::preset(&args.preset)?, false)?,
+        (None, Some(name)) => Look::default().through(named_lens(name, &OpticsSection::default())?.into(), false)?,
+        (None, None) => Look::default().through(LookLens::preset(&args.preset)?, false)?,
     };
     if let (Some(script), Some(output)) = (&args.script, &args.script_output) {
         let device = Device::open(args.backend.backends())?;

@@ -123,7 +123,8 @@ fn stop(ui: &mut Ui, look: &mut Look, opened: &Look) {
         LookLens::Optical(optical) => optical.section().fstop,
         _ => None,
     };
-    let (mut fstop, widest) = (set(&look.lens), optical.widest());
+    // As it is engraved: a lens opens as wide as that but for 1 %.
+    let (mut fstop, widest) = (set(&look.lens), (100.0 * optical.widest()).round() / 100.0);
     FSTOP.optional(ui, &mut fstop, (widest, "as wide as the lens opens"), set(&opened.lens));
     if fstop != set(&look.lens) {
         let fstop = fstop.map(|fstop| fstop.max(widest));

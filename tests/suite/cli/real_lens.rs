@@ -64,6 +64,84 @@ fn a_scene_file_sets_a_lens_as_options_do() {
     assert!(other == place.through(&eleven).0);
 }
 
+/// A preset by that name is the lens itself; one that is called like a preset is found as a lens alone.
+#[test]
+fn a_real_lens_is_a_preset_too() {
+    let place = Workplace::new();
+    place.photo("in.exr");
+    let lens = place.through(&["--lens", "tessar", "--fstop", "8"]).0;
+    assert!(lens == place.through(&["--preset", "tessar", "--fstop", "8"]).0);
+    place.text("look.toml", "version = 2\npreset = \"tessar\"\n");
+    assert!(lens == place.through(&["--scene", "look.toml", "--fstop", "8"]).0);
+    assert!(place.through(&["--preset", "zoom"]).0 != place.through(&["--lens", "zoom"]).0);
+    let list = place.json(&["presets", "--json"]);
+    let named = |name: &str| list.as_array().unwrap().iter().filter(|entry| entry["name"] == name).count();
+    assert_eq!([named("tessar"), named("zoom"), named("classic-prime")], [1, 1, 1]);
+    let toml = place.vglare(&["presets", "tessar"]).succeeded().stdout();
+    place.text("mine.toml", &toml);
+    assert!(
+        place.through(&["--lens", "mine.toml", "--fstop", "8", "--veil", "none"]).0
+            == place.through(&["--lens", "tessar", "--fstop", "8", "--veil", "none"]).0
+    );
+    place.text("old.toml", "preset = \"tessar\"\n");
+    place.vglare(&["apply", "in.exr", "-o", "out.exr", "--scene", "old.toml"]).failed(2, &["tessar", "classic-prime"]);
+}
+
+/// In a corner rims leave less of a lamp's ghosts than in the middle, whether it is a light or pixels.
+#[test]
+fn rims_cut_what_is_in_a_corner() {
+    let place = Workplace::new();
+    let (width, height) = (96, 54);
+    let black = |lamp: Option<usize>| -> Vec<u8> {
+        let mut bytes = format!("PF\n{width} {height}\n-1.0\n").into_bytes();
+        // Rows from the bottom.
+        let pixel = |k: usize| if lamp == Some(k) { 50.0f32 } else { 0.0 };
+        bytes.extend((0..width * height).flat_map(|k| [pixel(k); 3]).flat_map(f32::to_le_bytes));
+        bytes
+    };
+    let glare = |name: &str, options: &[&str]| -> f64 {
+        let base = [
+            "apply",
+            name,
+            "--glare",
+            "glare.pfm",
+            "--force",
+            "--veil",
+            "none",
+            "--lens",
+            "double-gauss",
+            "--no-calibration",
+        ];
+        place.vglare(&[&base[..], options].concat()).succeeded();
+        let bytes = std::fs::read(place.path("glare.pfm")).unwrap();
+        let values = bytes[bytes.len() - 12 * width * height..].as_chunks::<4>().0;
+        values.iter().map(|value| f64::from(f32::from_le_bytes(*value))).sum()
+    };
+    let at = |column: usize, row: usize| row * width + column;
+    for (name, lamp) in [("middle.pfm", at(48, 27)), ("corner.pfm", at(92, 3)), ("edge.pfm", at(92, 27))] {
+        std::fs::write(place.path(name), black(Some(lamp))).unwrap();
+    }
+    let [middle, edge, corner] = ["middle.pfm", "edge.pfm", "corner.pfm"].map(|name| glare(name, &[]));
+    assert!(edge < 0.8 * middle && corner < 0.8 * edge, "{middle} {edge} {corner}");
+    // The same lamp as a light.
+    std::fs::write(place.path("black.pfm"), black(None)).unwrap();
+    let y = |row: f64| (2.0 * row + 1.0 - 54.0) / 54.0;
+    let pixel = 2.0 / 54.0;
+    for (x, row, wanted) in [(92.0, 27.0, edge), (92.0, 3.0, corner)] {
+        let (x, y) = ((2.0 * x + 1.0 - 96.0) / 54.0, y(row));
+        let flux = 50.0 * pixel * pixel;
+        place.text(
+            "lamp.toml",
+            &format!(
+                "[[light]]\nposition = [{x}, {y}]\nflux = [{flux}, {flux}, {flux}]\nsize = {}\n",
+                pixel / 12f64.sqrt()
+            ),
+        );
+        let found = glare("black.pfm", &["--lights", "lamp.toml"]);
+        assert!((found / wanted - 1.0).abs() < 2e-3, "{found} {wanted}");
+    }
+}
+
 #[test]
 fn an_opening_is_the_lenss_and_the_starbursts() {
     let place = Workplace::new();
