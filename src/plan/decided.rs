@@ -170,6 +170,22 @@ impl Plan {
         self.groups().map(|group| group.members.len()).sum()
     }
 
+    /// What is left out of a photo's images; none where it has none.
+    pub fn faint_images(&self) -> Option<Faint> {
+        let images = self.problem.images()?;
+        let mut kept = vec![false; images.all().len()];
+        let of_photo = self.groups().filter(|group| group.is_of_photo());
+        of_photo.flat_map(|group| group.members.iter()).for_each(|&member| kept[member as usize] = true);
+        let (mut light, mut all) = (0.0, 0.0);
+        for (image, kept) in images.all().iter().zip(&kept) {
+            let flux = images.gathered(image).flux().into_iter().map(f64::abs).sum::<f64>();
+            all += flux;
+            light += if *kept { 0.0 } else { flux };
+        }
+        let left = kept.iter().filter(|kept| !**kept).count();
+        Some(Faint { images: left, of: kept.len(), light: if all > 0.0 { light / all } else { 0.0 } })
+    }
+
     /// How many of them are summed directly at every pixel: all by `direct`, a few or none beside a series.
     pub fn summed(&self) -> usize {
         self.summed_groups().map(|group| group.members.len()).sum()
@@ -192,6 +208,17 @@ impl Plan {
     }
 }
 
+/// Images of a photo that are too faint to show at the tolerance.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Faint {
+    /// How many are left out.
+    pub images: usize,
+    /// Of how many.
+    pub of: usize,
+    /// The part of the light of all of them that these have, 0 to 1.
+    pub light: f64,
+}
+
 impl Serialize for Plan {
     /// By keys that scripts read.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -207,6 +234,8 @@ impl Serialize for Plan {
             lattice: Option<&'a Lattice>,
             scale: [f64; 3],
             dropped: usize,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            faint: Option<Faint>,
             predicted: &'a Prediction,
             costs: &'a [Cost],
             refused: &'a [Refusal],
@@ -225,6 +254,7 @@ impl Serialize for Plan {
             lattice: self.lattice(),
             scale: *scale,
             dropped: *dropped,
+            faint: self.faint_images().filter(|faint| faint.images > 0),
             predicted,
             costs,
             refused,

@@ -43,7 +43,7 @@ use crate::{Error, Result};
 
 pub use crate::choices::Evaluator;
 pub use cost::{Cost, CostModel, GRID_PASSES};
-pub use decided::Plan;
+pub use decided::{Faint, Plan};
 pub use direct::Precision;
 pub use gather::{Gathering, Transform};
 pub(crate) use images::MANY_IMAGES;

@@ -69,6 +69,11 @@ pub(super) fn group(ghosts: &[Ghost], weights: &[f64]) -> Vec<Group> {
 }
 
 impl Group {
+    /// Whether its ghosts are those of a photo's pixels.
+    pub fn is_of_photo(&self) -> bool {
+        matches!(self.transform, Transform::Photo(_))
+    }
+
     fn new(bell: &Bell, size: DVec2) -> Self {
         Self {
             bell: bell.clone(),

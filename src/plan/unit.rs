@@ -4,13 +4,13 @@ use std::f64::consts::TAU;
 
 use glam::DVec2;
 
-use super::Request;
 use super::amplitudes::Rgb;
 use super::candidate::Survey;
 use super::images;
 use super::modes::Mode;
 use super::series::Wide;
 use super::weigh::{self, Weighed};
+use super::{Request, share};
 use crate::frame::Frame;
 use crate::problem::{Images, Problem};
 use crate::{Error, Result};
@@ -89,6 +89,12 @@ fn evenly(images: &Images) -> Rgb {
 fn in_units(problem: &Problem, images: &Images, request: &Request, scale: Rgb) -> Weighed {
     let mut weighed = weigh::weigh_in(problem, request.tolerance, scale);
     weighed.images = images::weights(images, scale);
+    // The faintest are left out: they would not show if all of their light were at one place.
+    let largest = weighed.images.clone();
+    let budget = share::DROPPED * request.tolerance - weighed.dropped_error;
+    let (dropped, error) = weigh::drop_faint(&mut weighed.images, &largest, budget);
+    weighed.dropped += dropped;
+    weighed.dropped_error += error;
     weighed.weight += weighed.images.iter().sum::<f64>();
     weighed
 }

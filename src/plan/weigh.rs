@@ -205,7 +205,7 @@ fn probes(ghosts: &[Ghost], shares: &[f64], frame: Frame) -> Vec<[i32; 2]> {
 /// Sets the weights of the faintest ghosts to zero while all of them together stay within the budget.
 ///
 /// Ghosts are told apart by powers of two only, so that no sorting is needed.
-fn drop_faint(weights: &mut [f64], reached: &[f64], budget: f64) -> (usize, f64) {
+pub(super) fn drop_faint(weights: &mut [f64], reached: &[f64], budget: f64) -> (usize, f64) {
     const LOWEST: i32 = -200;
     // The exponent of a normal number is the power of two below it.
     let bin = |value: f64| ((value.to_bits() >> 52) as i32 - 1023).clamp(LOWEST, 55);

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use crate::job::{Planning, VeilPlanned, VeilSeen};
-use crate::plan::{Cost, Evaluator, Gathering, Group, Plan, Source, Transform};
+use crate::plan::{Cost, Evaluator, Faint, Gathering, Group, Plan, Source, Transform};
 use crate::raster::Reduction;
 use crate::series::moments::Cells;
 
@@ -27,7 +27,11 @@ pub fn plan(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
     if let Some(beside) = plan.costs.first().and_then(Cost::beside) {
         write!(out, ", of {} ghosts {beside}", plan.ghosts())?;
     }
-    match plan.dropped {
+    let faint = plan.faint_images().filter(|faint| faint.images > 0);
+    if let Some(Faint { images, of, light }) = faint {
+        write!(out, ", {images} of {of} images too faint to show, with {:.2} % of their light", 100.0 * light)?;
+    }
+    match plan.dropped - faint.map_or(0, |faint| faint.images) {
         0 => writeln!(out),
         n => writeln!(out, ", {n} ghosts out of reach"),
     }
