@@ -50,6 +50,17 @@ pub enum Error {
         reason: String,
     },
 
+    /// A path of lights or of a camera says something that it must not.
+    #[error("{}:{} {reason}", path.display(), line.map(|line| format!("{line}:")).unwrap_or_default())]
+    PathFile {
+        /// The file or folder.
+        path: PathBuf,
+        /// The line, where one is at fault.
+        line: Option<u64>,
+        /// Why, in words.
+        reason: String,
+    },
+
     /// A script for the window that cannot be read or played.
     #[error("{}: {reason}", path.display())]
     Script {

@@ -24,6 +24,7 @@
 //! | [`veil`] | photo, point-spread function → the veil of every pixel, with its bound |
 //! | [`compare`], [`certificate`] | the one error metric, and a rendered field held against the definition |
 //! | [`job`] | a look laid over a photo: find, plan, render, certify |
+//! | [`motion`] | lights and cameras that move: where they are at a time, and what is seen then |
 //! | [`measure`] | arms timed in turns, and their ratios |
 //!
 //! Beside them stand [`panics`], which makes errors of them, `limits`, which asks the system for room and threads before
@@ -64,6 +65,7 @@ pub mod laboratory;
 mod limits;
 pub mod look;
 pub mod measure;
+pub mod motion;
 pub mod optics;
 #[cfg(feature = "terminal")]
 pub mod options;

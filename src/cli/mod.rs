@@ -1,6 +1,8 @@
 //! The commands for photos, one file each.
 
+pub mod animate;
 pub mod apply;
+mod encoding;
 mod found;
 pub mod info;
 pub mod lights;

@@ -247,7 +247,7 @@ const MOST_BYTES: u64 = 32 << 20;
 ///
 /// # Errors
 /// Why it cannot be read, for people: also where it is no regular file, which may have no end, or where it is too long.
-pub(super) fn contents(path: &Path) -> Result<Vec<u8>, String> {
+pub(crate) fn contents(path: &Path) -> Result<Vec<u8>, String> {
     let told = |error: std::io::Error| format!("cannot be read: {error}");
     // Before it is opened: opening a pipe waits for someone to write to it.
     let kind = fs::metadata(path).map_err(told)?.file_type();

@@ -28,6 +28,7 @@ mod veil;
 mod write;
 
 pub use emission::{Emission, is_light};
+pub(crate) use file::contents;
 pub use file::{SceneFile, read_lens, read_lights, read_lights_in, read_scene, unit_of_lights};
 pub use find::{FindOptions, Found, find, find_shining};
 pub use knee::{Knee, brightest};

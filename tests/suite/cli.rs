@@ -1,5 +1,6 @@
 //! The program as a user runs it: what it writes, what it says, what it exits with.
 
+mod animate;
 mod bad_input;
 mod calibrate;
 mod extremes;

@@ -3,12 +3,13 @@
 use std::path::{Path, PathBuf};
 
 /// Modules that know nothing of GL, windows and the command line.
-const PURE: [&str; 15] = [
+const PURE: [&str; 16] = [
     "choices",
     "compare",
     "error",
     "frame",
     "look",
+    "motion",
     "optics",
     "photo",
     "plan",

@@ -2,10 +2,10 @@
 
 mod fault;
 mod job;
-mod look;
-mod names;
-mod outputs;
-mod pipeline;
+pub(super) mod look;
+pub(super) mod names;
+pub(super) mod outputs;
+pub(super) mod pipeline;
 mod report;
 mod run;
 mod sequence;
@@ -15,17 +15,14 @@ mod tally;
 
 use std::path::PathBuf;
 
-use clap::ValueEnum;
-
 use crate::certificate::Verify;
+use crate::cli::encoding::EncodingArgs;
 use crate::look::Look;
 use crate::options::AccuracyArgs;
 use crate::options::FindArgs;
 use crate::options::ReadArgs;
 use crate::options::SceneArgs;
 use crate::options::VeilArgs;
-use crate::options::numbers::finite;
-use crate::photo::{Depth, ToneMap};
 use crate::{Result, limits};
 
 use look::LookArgs;
@@ -158,14 +155,14 @@ impl SequenceArgs {
 /// How the result is held against the truth.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Accuracy")]
-struct ProofArgs {
+pub(super) struct ProofArgs {
     /// Fail with exit code 3 where the measured error is beyond the tolerance, instead of warning
     #[arg(long)]
-    strict: bool,
+    pub(super) strict: bool,
 
     /// Where the glare is compared with the direct sum in 64-bit floats: at some hundred pixels, or at every one
     #[arg(long, value_enum, default_value_t = Verify::Sample)]
-    verify: Verify,
+    pub(super) verify: Verify,
 }
 
 /// What is written beside the picture, and how.
@@ -181,68 +178,8 @@ struct OutputArgs {
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
 
-    /// Depth of the samples [default: the input's in the same format; otherwise, and for --glare, float for OpenEXR and
-    /// TIFF, 8 for PNG]
-    #[arg(long, value_enum)]
-    depth: Option<DepthArg>,
-
-    /// Exposure in stops, for PNG, JPEG and integer TIFF
-    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_hyphen_values = true, value_parser = finite)]
-    exposure: f64,
-
-    /// Tone map, for PNG, JPEG and integer TIFF [default: none if the photo is display-referred, else agx]
-    #[arg(long, value_enum)]
-    tonemap: Option<ToneMapArg>,
-}
-
-/// `--depth`.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum DepthArg {
-    /// 8-bit integer
-    #[value(name = "8")]
-    Eight,
-    /// 16-bit integer
-    #[value(name = "16")]
-    Sixteen,
-    /// 16-bit float
-    Half,
-    /// 32-bit float
-    Float,
-}
-
-impl From<DepthArg> for Depth {
-    fn from(depth: DepthArg) -> Self {
-        match depth {
-            DepthArg::Eight => Self::Eight,
-            DepthArg::Sixteen => Self::Sixteen,
-            DepthArg::Half => Self::Half,
-            DepthArg::Float => Self::Float,
-        }
-    }
-}
-
-/// `--tonemap`.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum ToneMapArg {
-    /// Clip
-    None,
-    /// v / (1 + v), colour by colour
-    Reinhard,
-    /// The contrasty, film-like curve of ACES
-    Aces,
-    /// A soft, wide curve: AgX
-    Agx,
-}
-
-impl From<ToneMapArg> for ToneMap {
-    fn from(map: ToneMapArg) -> Self {
-        match map {
-            ToneMapArg::None => Self::None,
-            ToneMapArg::Reinhard => Self::Reinhard,
-            ToneMapArg::Aces => Self::Aces,
-            ToneMapArg::Agx => Self::Agx,
-        }
-    }
+    #[command(flatten)]
+    encoding: EncodingArgs,
 }
 
 #[cfg(test)]

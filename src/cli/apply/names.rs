@@ -77,14 +77,9 @@ impl Names {
                     match part {
                         Part::Text(text) => name.push_str(text),
                         Part::Name => name.push_str(stem),
-                        Part::Number(digits) if *digits > MOST_BYTES => {
-                            let room = format!("a file's name has room for {MOST_BYTES} bytes");
-                            return Err(Error::Usage(format!("a pattern asks for numbers of {digits} digits; {room}")));
-                        }
                         Part::Number(digits) => {
                             let (sign, number) = number(stem).ok_or_else(|| lacks("frame number", given))?;
-                            let digits = digits.saturating_sub(sign.len());
-                            name.push_str(&format!("{sign}{number:0>digits$}"));
+                            name.push_str(&padded(*digits, sign, number)?);
                         }
                     }
                 }
@@ -92,6 +87,45 @@ impl Names {
             }
         }
     }
+}
+
+impl Names {
+    /// Whether names have the frame's number in them.
+    pub fn count(&self) -> bool {
+        matches!(self, Self::Pattern { parts, .. } if parts.iter().any(|part| matches!(part, Part::Number(_))))
+    }
+
+    /// The output of a frame that has a number and no photo of its own; `{name}` is `name`. Without fields it is one and
+    /// the same.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for more digits than a name has room for.
+    pub fn of_frame(&self, name: &str, number: i64) -> Result<PathBuf> {
+        let (given, parts) = match self {
+            Self::Folder(given) | Self::File(given) => return Ok(given.clone()),
+            Self::Pattern { given, parts } => (given, parts),
+        };
+        let (sign, number) = (if number < 0 { "-" } else { "" }, number.unsigned_abs().to_string());
+        let filled: Result<String> = parts
+            .iter()
+            .map(|part| match part {
+                Part::Text(text) => Ok(text.clone()),
+                Part::Name => Ok(name.to_owned()),
+                Part::Number(digits) => padded(*digits, sign, &number),
+            })
+            .collect();
+        Ok(given.with_file_name(filled?))
+    }
+}
+
+/// A number with at least so many digits, of which the sign is one.
+fn padded(digits: usize, sign: &str, number: &str) -> Result<String> {
+    if digits > MOST_BYTES {
+        let room = format!("a file's name has room for {MOST_BYTES} bytes");
+        return Err(Error::Usage(format!("a pattern asks for numbers of {digits} digits; {room}")));
+    }
+    let digits = digits.saturating_sub(sign.len());
+    Ok(format!("{sign}{number:0>digits$}"))
 }
 
 /// Takes a file name apart.
@@ -197,6 +231,18 @@ mod tests {
         for (digits, fits) in [(255, true), (256, false), (70_000, false)] {
             assert_eq!(of(&"#".repeat(digits), "7.exr").is_some(), fits, "{digits} digits");
         }
+    }
+
+    #[test]
+    fn frames_are_counted() {
+        let of = |given: &str, number| {
+            let names = Names::new(Path::new(given)).expect("many names");
+            names.count().then(|| names.of_frame("path", number).unwrap().to_str().expect("text").to_owned())
+        };
+        assert_eq!(of("a/out.####.png", 7).as_deref(), Some("a/out.0007.png"));
+        assert_eq!(of("%02d_{name}.exr", 123).as_deref(), Some("123_path.exr"));
+        assert_eq!(of("x.####.exr", -7).as_deref(), Some("x.-007.exr"));
+        assert_eq!(of("{name}.exr", 7), None);
     }
 
     #[test]

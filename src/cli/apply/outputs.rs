@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::Args;
 use super::names::Names;
-use crate::photo::{self, Depth, Photo, WriteOptions};
+use crate::photo::{self, Photo, WriteOptions};
 use crate::target::{self, Identity};
 use crate::{Error, Result};
 
@@ -65,21 +65,12 @@ impl Paths {
 
 /// How the picture is written.
 pub fn picture_options(args: &Args) -> WriteOptions {
-    let outputs = &args.output_options;
-    WriteOptions {
-        depth: outputs.depth.map(Into::into),
-        exposure: outputs.exposure,
-        tone_map: outputs.tonemap.map(Into::into),
-        overwrite: args.force,
-    }
+    args.output_options.encoding.picture(args.force)
 }
 
-/// How the glare is written: as it is, and as exact as its format allows unless another depth is asked for. Beside a
-/// picture, that is a depth which the glare's format may not have.
+/// How the glare is written.
 pub fn glare_options(args: &Args, path: &Path) -> WriteOptions {
-    let asked: Option<Depth> = args.output_options.depth.map(Into::into);
-    let depth = asked.filter(|&depth| args.output.is_none() || photo::holds(path, depth));
-    WriteOptions { depth, exposure: 0.0, tone_map: None, overwrite: args.force }
+    args.output_options.encoding.glare(path, args.output.is_some(), args.force)
 }
 
 /// What is to be done: photos with their outputs.
@@ -149,7 +140,7 @@ fn folder(given: &Path, option: &str) -> Result<Names> {
 }
 
 /// Whether a folder is there, or can be made.
-fn room(folder: &Path) -> Result<()> {
+pub(in crate::cli) fn room(folder: &Path) -> Result<()> {
     if folder.is_dir() {
         return Ok(());
     }

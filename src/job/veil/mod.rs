@@ -10,6 +10,8 @@ mod summing;
 #[cfg(feature = "laboratory")]
 mod trials;
 
+use std::rc::Rc;
+
 use rayon::prelude::*;
 
 use super::{Computer, Stages};
@@ -54,20 +56,46 @@ pub(super) struct Prepared {
     view: Option<View>,
     seat: Seat,
     /// A plan and a kernel for all channels, or one for each.
-    channels: Vec<Channel>,
+    channels: Rc<Vec<Channel>>,
     /// The tolerance that it is held to.
     asked: f64,
 }
 
-/// Plans the veil of a look for pixels of a frame, which is the photo's, or that of a photo made larger or smaller.
-fn prepared(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame, stages: &mut Stages) -> Result<Prepared> {
+/// The veil that was planned last: photos of a sequence that are seen alike share its plan, which depends on nothing else.
+pub(super) struct Kept {
+    asked_for: Wanted,
+    grid: Option<Grid>,
+    seat: Seat,
+    held: Held,
+    /// The veil on these pixels, and how it is planned.
+    wanted: Wanted,
+    channels: Rc<Vec<Channel>>,
+    asked: f64,
+}
+
+/// Plans the veil of a look for pixels of a frame, which is the photo's, or that of a photo made larger or smaller; `kept` is what was
+/// planned before, where that is remembered.
+fn prepared(
+    look: &Look,
+    wanted: &Wanted,
+    photo: &Photo,
+    frame: &Frame,
+    kept: &mut Option<Kept>,
+    stages: &mut Stages,
+) -> Result<Prepared> {
     check(look, wanted, frame)?;
     let (view, seat) = seated(look, wanted, photo, frame)?;
-    let held = Held::new(look, wanted);
+    let (held, grid) = (Held::new(look, wanted), wanted.grid(&enlarged(look, frame)));
     stages.time("veil plan", || {
-        let wanted = on_pixels(wanted, wanted.grid(&enlarged(look, frame)).as_ref())?;
-        let (channels, asked) = held.channels(wanted.psf(), seat.pixels(wanted.border))?;
-        Ok(Prepared { wanted, view, seat, channels, asked })
+        let fits = |kept: &Kept| (&kept.asked_for, kept.grid, kept.seat, kept.held) == (wanted, grid, seat, held);
+        if !kept.as_ref().is_some_and(fits) {
+            let asked_for = wanted.clone();
+            let wanted = on_pixels(wanted, grid.as_ref())?;
+            let (channels, asked) = held.channels(wanted.psf(), seat.pixels(wanted.border))?;
+            *kept = Some(Kept { asked_for, grid, seat, held, wanted, channels: channels.into(), asked });
+        }
+        let Kept { wanted, channels, asked, .. } = kept.as_ref().expect("it is planned");
+        Ok(Prepared { wanted: wanted.clone(), view, seat, channels: channels.clone(), asked: *asked })
     })
 }
 
@@ -102,7 +130,7 @@ fn enlarged(look: &Look, frame: &Frame) -> Frame {
 /// Those that computing it would have before it begins.
 pub fn plan_veil(look: &Look, photo: &Photo, frame: &Frame) -> Result<Option<VeilPlanned>> {
     let Some(wanted) = look.veil_on(frame) else { return Ok(None) };
-    let prepared = prepared(look, wanted, photo, frame, &mut Stages::default())?;
+    let prepared = prepared(look, wanted, photo, frame, &mut None, &mut Stages::default())?;
     Ok(Some(VeilPlanned::new(look, frame, prepared)))
 }
 
@@ -117,11 +145,13 @@ pub(super) fn cast(
     recovered: &Recovered,
     frame: &Frame,
     verify: Verify,
-    computer: Option<&mut Computer>,
+    mut computer: Option<&mut Computer>,
     stages: &mut Stages,
 ) -> Result<Option<Cast>> {
     let Some(wanted) = look.veil_on(frame) else { return Ok(None) };
-    let Prepared { wanted, view, seat, channels, asked } = prepared(look, wanted, photo, frame, stages)?;
+    let mut forgotten = None;
+    let kept = computer.as_deref_mut().map_or(&mut forgotten, |computer| &mut computer.veil);
+    let Prepared { wanted, view, seat, channels, asked } = prepared(look, wanted, photo, frame, kept, stages)?;
     let wanted = &wanted;
     let pixels = &*Emission::of(photo).given(recovered.over(&photo.pixels));
     let stored = veil::Photo::rgba(pixels.as_flattened(), seat.stored).map_err(failed)?;

@@ -1,0 +1,96 @@
+//! How pictures are written: what the commands that write some have in common.
+
+use std::path::Path;
+
+use clap::ValueEnum;
+
+use crate::options::numbers::finite;
+use crate::photo::{self, Depth, ToneMap, WriteOptions};
+
+/// How pictures are written.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Output")]
+pub struct EncodingArgs {
+    /// Depth of the samples [default: the input's in the same format; otherwise, and for --glare, float for OpenEXR and
+    /// TIFF, 8 for PNG]
+    #[arg(long, value_enum)]
+    depth: Option<DepthArg>,
+
+    /// Exposure in stops, for PNG, JPEG and integer TIFF
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_hyphen_values = true, value_parser = finite)]
+    exposure: f64,
+
+    /// Tone map, for PNG, JPEG and integer TIFF [default: none if the photo is display-referred, else agx]
+    #[arg(long, value_enum)]
+    tonemap: Option<ToneMapArg>,
+}
+
+impl EncodingArgs {
+    /// How a picture is written.
+    pub fn picture(&self, overwrite: bool) -> WriteOptions {
+        WriteOptions {
+            depth: self.depth.map(Into::into),
+            exposure: self.exposure,
+            tone_map: self.tonemap.map(Into::into),
+            overwrite,
+        }
+    }
+
+    /// How the glare is written: as it is, and as exact as its format allows unless another depth is asked for. Beside a
+    /// picture, that is a depth which the glare's format may not have.
+    pub fn glare(&self, path: &Path, beside_picture: bool, overwrite: bool) -> WriteOptions {
+        let asked: Option<Depth> = self.depth.map(Into::into);
+        let depth = asked.filter(|&depth| !beside_picture || photo::holds(path, depth));
+        WriteOptions { depth, exposure: 0.0, tone_map: None, overwrite }
+    }
+}
+
+/// `--depth`.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum DepthArg {
+    /// 8-bit integer
+    #[value(name = "8")]
+    Eight,
+    /// 16-bit integer
+    #[value(name = "16")]
+    Sixteen,
+    /// 16-bit float
+    Half,
+    /// 32-bit float
+    Float,
+}
+
+impl From<DepthArg> for Depth {
+    fn from(depth: DepthArg) -> Self {
+        match depth {
+            DepthArg::Eight => Self::Eight,
+            DepthArg::Sixteen => Self::Sixteen,
+            DepthArg::Half => Self::Half,
+            DepthArg::Float => Self::Float,
+        }
+    }
+}
+
+/// `--tonemap`.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum ToneMapArg {
+    /// Clip
+    None,
+    /// v / (1 + v), colour by colour
+    Reinhard,
+    /// The contrasty, film-like curve of ACES
+    Aces,
+    /// A soft, wide curve: AgX
+    Agx,
+}
+
+impl From<ToneMapArg> for ToneMap {
+    fn from(map: ToneMapArg) -> Self {
+        match map {
+            ToneMapArg::None => Self::None,
+            ToneMapArg::Reinhard => Self::Reinhard,
+            ToneMapArg::Aces => Self::Aces,
+            ToneMapArg::Agx => Self::Agx,
+        }
+    }
+}
