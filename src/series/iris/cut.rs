@@ -116,7 +116,7 @@ impl Iris {
         // The product as it is, of which the brightest is looked for.
         let parts = Self::with(whole, cuts.clone(), 1.0);
         let peak = parts.brightest().recip();
-        if !(peak * DARKEST < 1.0) {
+        if peak.is_nan() || peak * DARKEST >= 1.0 {
             return None;
         }
         Some(Self::with(whole, cuts, peak))
