@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// Modules that know nothing of GL, windows and the command line.
-const PURE: [&str; 15] = [
+const PURE: [&str; 16] = [
     "choices",
     "compare",
     "error",
@@ -12,6 +12,7 @@ const PURE: [&str; 15] = [
     "optics",
     "photo",
     "plan",
+    "plate",
     "problem",
     "psf",
     "reference",
