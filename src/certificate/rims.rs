@@ -68,7 +68,7 @@ fn brightest(raster: &Raster) -> Vec<DVec2> {
 mod tests {
     use super::*;
     use crate::frame::Frame;
-    use crate::plan::{Request, plan};
+    use crate::plan::{Evaluator, Request, plan};
     use crate::problem::Problem;
     use crate::scene::LensGhost;
     use crate::series::{Bell, Disc};
@@ -81,7 +81,8 @@ mod tests {
         let bell = Bell::Disc(Disc::new(0.1, 0, 0.0).unwrap());
         let lens = LensGhost { bell, along: -0.7, size: DVec2::splat(0.5), tint: [1.0; 3], share: 0.01 };
         let images = Images::new(Raster::new(&pixels, frame).unwrap(), &[lens], DVec2::ZERO, 1.0, [1.0; 3]);
-        let plan = plan(&Problem::with_images([], images.into(), frame), &Request::new(1e-3)).unwrap();
+        let request = Request { evaluator: Some(Evaluator::Plate), ..Request::new(1e-3) };
+        let plan = plan(&Problem::with_images([], images.into(), frame), &request).unwrap();
         let (images, centre) = (plan.problem().images().unwrap(), -0.7 * frame.position(60.0, 30.0));
         let looked_at = rims(&plan, images, 108);
         let radius = |[i, j]: &[i32; 2]| (frame.position(f64::from(*i), f64::from(*j)) - centre).length();

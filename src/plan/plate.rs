@@ -225,7 +225,8 @@ impl Task<'_> {
         predicted.cut += cut;
         predicted.rounding += rounding;
         predicted.storage += 2.0 * STORED;
-        let costs: Vec<Cost> = vec![cost::estimate(&layers, plan.precision, self.problem.frame(), &self.asked.cost_model)];
+        let costs: Vec<Cost> =
+            vec![cost::estimate(&layers, plan.precision, self.problem.frame(), &self.asked.cost_model)];
         let (problem, tolerance) = (self.problem.clone(), self.asked.tolerance);
         Plan { problem, tolerance, layers, predicted, costs, ..plan }
     }

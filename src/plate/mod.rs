@@ -107,14 +107,16 @@ pub(crate) fn sheet(images: &Images, parts: &[Part], frame: Frame) -> Result<She
         let seat = seat::Seat::new(images, &images.all()[part.image], frame);
         match part.way {
             Way::Products => products::add(&seat, &mut sheet),
-            Way::Pairs => pairs::add(&seat, part.weights, None, &mut sheet),
+            Way::Pairs => pairs::add(&seat, part.weights, &mut sheet),
             Way::Spans => spans::add(&seat, &mut sheet),
             Way::Lattice { finer, alone_above } => {
                 if kernel::step(&seat.image.ghost).is_some() {
                     spans::add(&seat, &mut sheet);
                 }
                 lattice::add(&seat, finer, part.weights, alone_above, &mut sheet);
-                pairs::add(&seat, part.weights, Some(alone_above), &mut sheet);
+                if alone_above.is_finite() {
+                    pairs::add_bright(&seat, part.weights, alone_above, &mut sheet);
+                }
             }
         }
     }

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::Sheet;
+use super::kernel::Kernel;
 use super::seat::{Seat, within};
 use crate::series::Bell;
 
@@ -50,62 +51,82 @@ fn bright(seat: &Seat, row: usize, columns: std::ops::Range<usize>, weights: [f6
     columns.filter(|&column| all[column] > above).collect()
 }
 
-/// Adds the ghosts of the pixels of more than a weight, or of all that shine.
-pub(super) fn add(seat: &Seat, weights: [f64; 3], above: Option<f64>, sheet: &mut Sheet) {
+/// Adds the ghosts of all pixels that shine.
+pub(super) fn add(seat: &Seat, weights: [f64; 3], sheet: &mut Sheet) {
+    let shape = seat.image.ghost.bell.shape();
+    let over = |xs: &[f64], ys: &[f64], visit: &mut dyn FnMut(usize, &[f64])| {
+        shape.over(xs, ys, seat.image.ghost.size, visit);
+    };
+    add_by(seat, weights, 0.0, &over, sheet);
+}
+
+/// Adds the ghosts of the pixels of more than a weight, less their steps.
+pub(super) fn add_bright(seat: &Seat, weights: [f64; 3], above: f64, sheet: &mut Sheet) {
+    let kernel = Kernel::new(&seat.image.ghost);
+    let over = |xs: &[f64], ys: &[f64], visit: &mut dyn FnMut(usize, &[f64])| {
+        let mut row = vec![0.0; xs.len()];
+        for (index, y) in ys.iter().enumerate() {
+            kernel.row(xs, *y, &mut row);
+            visit(index, &row);
+        }
+    };
+    add_by(seat, weights, above, &over, sheet);
+}
+
+/// The bell at columns and rows of offsets, row by row.
+type Over<'a> = dyn Fn(&[f64], &[f64], &mut dyn FnMut(usize, &[f64])) + Sync + 'a;
+
+fn add_by(seat: &Seat, weights: [f64; 3], above: f64, over: &Over<'_>, sheet: &mut Sheet) {
     let [columns, rows] = reaching(seat);
-    let above = above.unwrap_or(0.0);
     let all: Vec<(usize, Vec<usize>)> = rows
         .into_par_iter()
         .map(|row| (row, bright(seat, row, columns.clone(), weights, above)))
         .filter(|(_, bright)| !bright.is_empty())
         .collect();
-    if all.is_empty() {
-        return;
-    }
     let width = sheet.width;
-    let mut bands: Vec<(usize, Vec<&mut [f64]>)> = Vec::new();
     let [red, green, blue] = &mut sheet.planes;
-    let planes = red.chunks_mut(ROWS * width).zip(green.chunks_mut(ROWS * width)).zip(blue.chunks_mut(ROWS * width));
-    bands.extend(planes.enumerate().map(|(band, ((red, green), blue))| (band * ROWS, vec![red, green, blue])));
-    bands.into_par_iter().with_max_len(1).for_each(|(first, mut planes)| {
-        let places = &seat.places[1][first..][..planes[0].len() / width];
+    let planes =
+        red.par_chunks_mut(ROWS * width).zip(green.par_chunks_mut(ROWS * width)).zip(blue.par_chunks_mut(ROWS * width));
+    planes.enumerate().with_max_len(1).for_each(|(number, ((red, green), blue))| {
+        let places = &seat.places[1][number * ROWS..][..red.len() / width];
+        let mut band = Band { seat, width, planes: [red, green, blue] };
         for (row, bright) in &all {
             let centre = seat.centres[1][*row];
             let near = within(places, centre - seat.reach.y, centre + seat.reach.y);
-            if near.is_empty() {
-                continue;
-            }
             let ys: Vec<f64> = places[near.clone()].iter().map(|place| place - centre).collect();
-            for &column in bright {
-                of_one(seat, [*row, column], (near.start, &ys), width, &mut planes);
+            if !ys.is_empty() {
+                bright.iter().for_each(|column| band.add([*row, *column], near.start, &ys, over));
             }
         }
     });
 }
 
-/// Adds the ghost of one pixel on some rows of a band.
-fn of_one(
-    seat: &Seat,
-    [row, column]: [usize; 2],
-    (first, ys): (usize, &[f64]),
+/// Some rows of the window.
+struct Band<'a> {
+    seat: &'a Seat<'a>,
     width: usize,
-    planes: &mut [&mut [f64]],
-) {
-    let (ghost, centre) = (&seat.image.ghost, seat.centres[0][column]);
-    let near = within(&seat.places[0], centre - seat.reach.x, centre + seat.reach.x);
-    if near.is_empty() {
-        return;
-    }
-    let xs: Vec<f64> = seat.places[0][near.clone()].iter().map(|place| place - centre).collect();
-    let light = [0, 1, 2].map(|colour| {
-        let (light, factor) = seat.light(row, colour);
-        ghost.radiance[colour] * factor * f64::from(light[column])
-    });
-    ghost.bell.shape().over(&xs, ys, ghost.size, &mut |index, values| {
-        let from = (first + index) * width + near.start;
-        for (plane, light) in planes.iter_mut().zip(light) {
-            let out = &mut plane[from..][..values.len()];
-            out.iter_mut().zip(values).for_each(|(out, value)| *out += light * value);
+    planes: [&'a mut [f64]; 3],
+}
+
+impl Band<'_> {
+    /// Adds the ghost of one pixel on some of its rows, from the first on.
+    fn add(&mut self, [row, column]: [usize; 2], first: usize, ys: &[f64], over: &Over<'_>) {
+        let (seat, centre) = (self.seat, self.seat.centres[0][column]);
+        let near = within(&seat.places[0], centre - seat.reach.x, centre + seat.reach.x);
+        if near.is_empty() {
+            return;
         }
-    });
+        let xs: Vec<f64> = seat.places[0][near.clone()].iter().map(|place| place - centre).collect();
+        let light = [0, 1, 2].map(|colour| {
+            let (light, factor) = seat.light(row, colour);
+            seat.image.ghost.radiance[colour] * factor * f64::from(light[column])
+        });
+        over(&xs, ys, &mut |index, values| {
+            let from = (first + index) * self.width + near.start;
+            for (plane, light) in self.planes.iter_mut().zip(light) {
+                let out = &mut plane[from..][..values.len()];
+                out.iter_mut().zip(values).for_each(|(out, value)| *out += light * value);
+            }
+        });
+    }
 }

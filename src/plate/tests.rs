@@ -132,6 +132,10 @@ fn no_lattice_is_off_by_more_than_its_bound_and_no_bound_is_far_too_large() {
             let held = Held::new(&images, frame);
             let weights = held.weights(&images);
             let seat = Seat::new(&images, &images.all()[0], frame);
+            // What doubles lose, and what is left out of a tail of a lamp that is not in the picture.
+            let flux = images.raster().flux();
+            let nothing =
+                1e-9 + 2.0 * crate::problem::NOTHING * (0..3).map(|c| weights[c] * flux[c]).fold(0.0, f64::max);
             for finer in [1, 2, 4] {
                 // All light, or without the lamp.
                 for alone_above in [f64::INFINITY, 0.5 * weights[0] * seat.light(0, 0).1 * 300.0] {
@@ -140,8 +144,8 @@ fn no_lattice_is_off_by_more_than_its_bound_and_no_bound_is_far_too_large() {
                     let parts = [Part { image: 0, way: Way::Lattice { finer, alone_above }, weights }];
                     let off = held.off(&sheet(&images, &parts, frame).unwrap());
                     let told = format!("{bell:?} along {along} of {size}, {finer} points: {off:e} for {bound:e}");
-                    assert!(off <= bound + 1e-9, "{told}");
-                    if off > 1e-7 {
+                    assert!(off <= bound + nothing, "{told}");
+                    if off > 1e-7 + 10.0 * nothing {
                         factors.push((bound / off, told));
                     }
                 }
