@@ -1,5 +1,6 @@
 //! The error of a field that was rendered, measured against the direct sum in f64, at sample pixels or at all of them.
 
+mod rims;
 mod sample;
 mod whole;
 

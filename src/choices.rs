@@ -17,10 +17,12 @@ pub enum Evaluator {
     Grid,
     /// Sum each bell at the pixels that it reaches, and nowhere else.
     Local,
+    /// Sum the ghosts of all pixels of a photo on the picture's own pixels.
+    Plate,
 }
 
 impl Evaluator {
-    /// Every evaluator.
+    /// Every evaluator of single ghosts; the ghosts of all pixels of a photo go by a series, by a plate, or by both.
     pub const ALL: [Self; 5] = [Self::Direct, Self::Series, Self::Rows, Self::Grid, Self::Local];
 
     /// Those that evaluate a Fourier series.
@@ -40,6 +42,7 @@ impl std::fmt::Display for Evaluator {
             Self::Rows => "rows",
             Self::Grid => "grid",
             Self::Local => "local",
+            Self::Plate => "plate",
         })
     }
 }

@@ -72,6 +72,7 @@ pub mod options;
 pub mod panics;
 pub mod photo;
 pub mod plan;
+pub(crate) mod plate;
 mod printable;
 pub mod problem;
 pub mod psf;

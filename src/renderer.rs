@@ -25,6 +25,7 @@ mod live;
 mod local;
 mod mask;
 mod picture;
+mod plate;
 mod scatter;
 mod settings;
 mod spectrum;

@@ -3,6 +3,7 @@
 
 use glam::DVec2;
 
+use super::rims::rims;
 use crate::plan::Plan;
 use crate::problem::Images;
 use crate::series::{Bell, Modes};
@@ -16,14 +17,24 @@ const BELLS: f64 = 5e7;
 const FEWEST: usize = 2;
 const MOST: usize = 20;
 
+/// Pixels at rims, at least and at most.
+const FEWEST_AT_RIMS: usize = 9;
+const MOST_AT_RIMS: usize = 108;
+
 /// The pixels to look at: the corners, those where the field was found largest, and others spread between them.
 pub(super) fn crossings(plan: &Plan, images: &Images) -> Vec<[i32; 2]> {
     let window = plan.problem().frame().window;
     let [columns, rows] = counts(images);
+    let points = columns * rows;
     let peaks: Vec<[i32; 2]> = plan.peaks.iter().rev().copied().collect();
     let columns = lines(window.x, window.width, columns, peaks.iter().map(|peak| peak[0]));
     let rows = lines(window.y, window.height, rows, peaks.iter().map(|peak| peak[1]));
-    columns.iter().flat_map(|&i| rows.iter().map(move |&j| [i, j])).collect()
+    let crossings = columns.iter().flat_map(|&i| rows.iter().map(move |&j| [i, j]));
+    let mut pixels: Vec<[i32; 2]> =
+        crossings.chain(rims(plan, images, points.clamp(FEWEST_AT_RIMS, MOST_AT_RIMS))).collect();
+    pixels.sort_unstable();
+    pixels.dedup();
+    pixels
 }
 
 /// How many columns and rows there is time for.

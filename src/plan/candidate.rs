@@ -254,7 +254,7 @@ fn with_rounding(
     let rounds = match evaluator {
         Evaluator::Direct => rounds(plan.ghosts()),
         Evaluator::Series => plan.terms() + plan.counts().len() + plan.summed(),
-        Evaluator::Rows | Evaluator::Grid | Evaluator::Local => 0,
+        Evaluator::Rows | Evaluator::Grid | Evaluator::Local | Evaluator::Plate => 0,
     };
     if rounds > request.loop_rounds {
         return Err(Error::Plan(format!("{evaluator} would need more rounds of a loop than this renderer runs")));

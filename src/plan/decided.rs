@@ -7,7 +7,9 @@ use serde::{Serialize, Serializer};
 
 use super::layer::Told;
 use super::modes::Mode;
-use super::{Cost, Evaluator, Group, Lattice, Layer, Local, Modes, Precision, Prediction, Refusal, Series, amplitudes};
+use super::{
+    Cost, Evaluator, Group, Lattice, Layer, Local, Modes, Plate, Precision, Prediction, Refusal, Series, amplitudes,
+};
 use crate::problem::Problem;
 
 /// What was decided for a problem: the layers whose sum is the field, with the error and the cost that are expected.
@@ -59,6 +61,7 @@ impl Plan {
             Layer::Series(series) => series.precision == Precision::Double,
             Layer::Direct(groups) => self.precision == Precision::Double && !groups.is_empty(),
             Layer::Local(local) => local.precision == Precision::Double,
+            Layer::Plate(_) => false,
         })
     }
 
@@ -92,6 +95,16 @@ impl Plan {
                 let (period, counts) = (series.period, series.counts.clone());
                 change(series);
                 series.modes = modes.filter(|_| series.period == period && series.counts == counts);
+            }
+        }
+        self
+    }
+
+    /// The same plan with the groups of its series changed.
+    pub(super) fn with_groups(mut self, change: impl Fn(&mut Group)) -> Self {
+        for layer in &mut self.layers {
+            if let Layer::Series(series) = layer {
+                series.groups.iter_mut().for_each(&change);
             }
         }
         self
@@ -174,7 +187,11 @@ impl Plan {
     pub fn faint_images(&self) -> Option<Faint> {
         let images = self.problem.images()?;
         let mut kept = vec![false; images.all().len()];
-        let of_photo = self.groups().filter(|group| group.is_of_photo());
+        let of_layer = |layer: &Layer| matches!(layer, Layer::Plate(_));
+        let of_photo = self
+            .layers
+            .iter()
+            .flat_map(|layer| layer.groups().iter().filter(move |group| of_layer(layer) || group.is_of_photo()));
         of_photo.flat_map(|group| group.members.iter()).for_each(|&member| kept[member as usize] = true);
         let (mut light, mut all) = (0.0, 0.0);
         for (image, kept) in images.all().iter().zip(&kept) {
@@ -196,7 +213,12 @@ impl Plan {
         self.layers.iter().find_map(|layer| if let Layer::Local(local) = layer { Some(local) } else { None })
     }
 
-    /// The groups of those.
+    /// Its plate, if there is one.
+    pub fn plate(&self) -> Option<&Plate> {
+        self.layers.iter().find_map(|layer| if let Layer::Plate(plate) = layer { Some(plate) } else { None })
+    }
+
+    /// The groups that are summed at every pixel.
     pub fn summed_groups(&self) -> impl Iterator<Item = &Group> {
         let summed = |layer: &&Layer| matches!(layer, Layer::Direct(_));
         self.layers.iter().filter(summed).flat_map(Layer::groups)

@@ -200,16 +200,13 @@ pub(super) fn too_many(groups: &[Group]) -> Error {
     let Some(Group { bell, smallest, .. }) = sharpest else { return Error::Plan("there are no images".into()) };
     if let Bells::None = bell.shape().modes() {
         return Error::Plan(format!(
-            "a {bell} with blades has no series, and the ghosts of all pixels are nothing else; give an iris in its place, which has one, or \
-             --sources lights"
+            "a {bell} with blades has no series: the plate sums it, where no other evaluator is asked for"
         ));
     }
     Error::Plan(format!(
-        "the ghosts of all pixels would need a series of too many modes, by a bell of {:.3} x {:.3} ({bell}); give a looser tolerance, \
-         --sources lights, a larger --size, or a lens with larger or softer ghosts{}",
-        smallest.x,
-        smallest.y,
-        if let Bell::Disc(_) = bell { ", as an iris has" } else { "" }
+        "the ghosts of all pixels would need a series of too many modes, by a bell of {:.3} x {:.3} ({bell}): the plate sums them, where \
+         neither another evaluator nor a period or degree is asked for",
+        smallest.x, smallest.y,
     ))
 }
 

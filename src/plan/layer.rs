@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use super::{Evaluator, Group, Lattice, Local, Modes, Precision, Transform};
+use super::{Evaluator, Group, Lattice, Local, Modes, Plate, Precision, Transform};
+use crate::plate::Way;
 
 /// A part of the field, with the way that it is computed.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,6 +16,8 @@ pub enum Layer {
     Direct(Vec<Group>),
     /// The bells, each at the pixels that it reaches.
     Local(Local),
+    /// Images of a whole photo, summed on the picture's own pixels.
+    Plate(Plate),
 }
 
 impl Layer {
@@ -29,6 +32,7 @@ impl Layer {
             Self::Series(series) => &series.groups,
             Self::Direct(groups) => groups,
             Self::Local(local) => &local.groups,
+            Self::Plate(plate) => &plate.groups,
         }
     }
 
@@ -38,6 +42,7 @@ impl Layer {
             Self::Series(series) => series.evaluator,
             Self::Direct(_) => Evaluator::Direct,
             Self::Local(_) => Evaluator::Local,
+            Self::Plate(_) => Evaluator::Plate,
         }
     }
 }
@@ -88,6 +93,9 @@ pub(super) struct Told {
     level: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     reached: Option<f64>,
+    /// How each image is summed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ways: Option<Vec<Way>>,
 }
 
 impl From<&Layer> for Told {
@@ -99,9 +107,11 @@ impl From<&Layer> for Told {
             Layer::Local(local) => Some(local.precision),
             // That of the plan.
             Layer::Direct(_) => None,
+            Layer::Plate(_) => Some(Precision::Double),
         };
         let local = if let Layer::Local(local) = layer { Some(local) } else { None };
         let (level, reached) = (local.map(|local| local.level), local.map(|local| local.reached));
-        Self { evaluator: layer.evaluator(), precision, ghosts, terms, level, reached }
+        let ways = if let Layer::Plate(plate) = layer { Some(plate.ways().collect()) } else { None };
+        Self { evaluator: layer.evaluator(), precision, ghosts, terms, level, reached, ways }
     }
 }

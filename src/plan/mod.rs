@@ -20,6 +20,7 @@ mod layer;
 mod local;
 mod modes;
 mod period;
+mod plate;
 mod prediction;
 mod request;
 mod rounding;
@@ -42,6 +43,7 @@ use crate::scene::Ghost;
 use crate::{Error, Result};
 
 pub use crate::choices::Evaluator;
+pub use crate::plate::{Part, Way};
 pub use cost::{Cost, CostModel, GRID_PASSES};
 pub use decided::{Faint, Plan};
 pub use direct::Precision;
@@ -53,6 +55,7 @@ pub use layer::{Layer, Series};
 pub use local::Local;
 pub(crate) use local::{Area, LARGEST_POINT, block_shift};
 pub use modes::{Mode, Modes};
+pub use plate::Plate;
 pub use prediction::{Prediction, Source};
 pub(crate) use request::GHOSTS_A_ROUND;
 pub use request::Request;
@@ -122,6 +125,11 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
     if let Some(images) = problem.images() {
         return attempt_with(images, problem, asked);
     }
+    if asked.evaluator == Some(Evaluator::Plate) && !ghosts.is_empty() {
+        return Err(Error::Plan(
+            "a plate has the ghosts of all pixels of a photo, and these are of single lights; give --sources photo, or another evaluator".into(),
+        ));
+    }
     let request = &Request { period: own_period(ghosts, asked)?, ..*asked };
     request.period.map_or(Ok(()), check::period)?;
     let survey = Survey::new(problem, request);
@@ -177,20 +185,47 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
     Ok(found.cheapest())
 }
 
-/// The same where the whole photo shines: all is one series, whose modes are the photo's own.
+/// The same where the whole photo shines: all is one series, whose modes are the photo's own; or what is too sharp for one is summed on
+/// the plate.
 fn attempt_with(
     images: &Images,
     problem: &Arc<Problem>,
     asked: &Request,
 ) -> Result<std::result::Result<Plan, Vec<Error>>> {
     check::images(images)?;
-    if let Some(evaluator) = asked.evaluator.filter(|evaluator| !evaluator.is_series()) {
+    let on_plate = |evaluator: &Evaluator| *evaluator == Evaluator::Plate;
+    if let Some(evaluator) = asked.evaluator.filter(|evaluator| !evaluator.is_series() && !on_plate(evaluator)) {
         let (pixels, each) = (images.raster().pixels(), images.all().len());
         return Err(Error::Plan(format!(
-            "the ghosts of all pixels are {pixels} times {each}, which a series adds up and {evaluator} cannot; give --sources lights, or \
-             another evaluator"
+            "the ghosts of all pixels are {pixels} times {each}, which a series or a plate adds up and {evaluator} cannot; give --sources \
+             lights, or another evaluator"
         )));
     }
+    // What is given by hand is that of a series.
+    let given = asked.degree.is_some() || asked.period.is_some();
+    if asked.evaluator.is_some_and(|evaluator| on_plate(&evaluator)) {
+        return if given { Err(plate::by_hand()) } else { plate::plan(images, problem, asked, &[]) };
+    }
+    let by_series = by_series(images, problem, asked);
+    if given || asked.evaluator.is_some() {
+        return by_series;
+    }
+    let errors = match by_series {
+        Ok(Ok(plan)) => return Ok(Ok(plan)),
+        Ok(Err(errors)) => errors,
+        Err(error) => vec![error],
+    };
+    // Where it is floats that are not exact enough, a plate's are not, either.
+    let sharp = errors.iter().any(|error| !matches!(error, Error::ToleranceBelowFloor { .. }));
+    if sharp { plate::plan(images, problem, asked, &errors) } else { Ok(Err(errors)) }
+}
+
+/// All of a photo's images as one series.
+fn by_series(
+    images: &Images,
+    problem: &Arc<Problem>,
+    asked: &Request,
+) -> Result<std::result::Result<Plan, Vec<Error>>> {
     let bells: Vec<Ghost> =
         images.all().iter().map(|image| image.ghost.clone()).chain(problem.ghosts().to_vec()).collect();
     let request = &Request { period: own_period(&bells, asked)?, ..*asked };

@@ -12,10 +12,10 @@ use crate::series::Bell;
 /// is the worst case: the errors of many average out.
 fn per_weight(evaluator: Evaluator) -> f64 {
     match evaluator {
-        Evaluator::Direct | Evaluator::Local => 0.0, // see `direct` and `local`
-        Evaluator::Series => 8e-7,                   // seen: 3.5e-7
-        Evaluator::Rows => 1.2e-6,                   // seen: 6.0e-7
-        Evaluator::Grid => 1.6e-6,                   // seen: 8.3e-7, with some interpolation in it
+        Evaluator::Direct | Evaluator::Local | Evaluator::Plate => 0.0, // see `direct`, `local` and `plate`
+        Evaluator::Series => 8e-7,                                      // seen: 3.5e-7
+        Evaluator::Rows => 1.2e-6,                                      // seen: 6.0e-7
+        Evaluator::Grid => 1.6e-6,                                      // seen: 8.3e-7, with some interpolation in it
     }
 }
 
@@ -39,7 +39,7 @@ pub(super) struct Strength {
 pub(super) fn of_modes(evaluator: Evaluator, strength: &Strength, degree: [u32; 2]) -> f64 {
     const UNIT: f64 = 0.5 * f32::EPSILON as f64;
     let [tables, sums] = match evaluator {
-        Evaluator::Direct | Evaluator::Local => [0.0; 2],
+        Evaluator::Direct | Evaluator::Local | Evaluator::Plate => [0.0; 2],
         Evaluator::Series => [0.5, 2.2],
         Evaluator::Rows => [0.5, 2.7],
         Evaluator::Grid => [3.0, 1.8],
@@ -93,7 +93,7 @@ pub(super) fn of_exact(groups: &[Group], degree: [u32; 2]) -> f64 {
 pub(super) fn stored(weighed: &Weighed, evaluator: Evaluator) -> f64 {
     const HALF_A_UNIT: f64 = 0.5 * f32::EPSILON as f64;
     let results = match evaluator {
-        Evaluator::Direct | Evaluator::Local => 1.0,
+        Evaluator::Direct | Evaluator::Local | Evaluator::Plate => 1.0,
         Evaluator::Series => 3.0,
         Evaluator::Rows => 4.0,
         Evaluator::Grid => 7.0,

@@ -88,6 +88,13 @@ impl Group {
         }
     }
 
+    /// A single one, by its number, that is summed itself.
+    pub(super) fn of_one(ghost: &Ghost, member: u32, weight: f64) -> Self {
+        let mut group = Self::new(&ghost.bell, ghost.size);
+        group.add(ghost.size, weight);
+        Self { members: Arc::new(vec![member]), transform: Transform::Direct, ..group }
+    }
+
     fn add(&mut self, size: DVec2, weight: f64) {
         self.ghosts += 1;
         self.proportional &= alike(size, self.smallest);

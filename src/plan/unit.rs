@@ -77,7 +77,7 @@ pub(super) fn weighed(problem: &Problem, images: &Images, request: &Request) -> 
 }
 
 /// What the images would come to if the light of each were spread evenly over all that it reaches.
-fn evenly(images: &Images) -> Rgb {
+pub(super) fn evenly(images: &Images) -> Rgb {
     images.all().iter().fold([0.0; 3], |sum, image| {
         let (flux, [low, high]) = (images.gathered(image).flux(), images.centres(image));
         let area = (high - low + 2.0 * image.ghost.size).element_product();
@@ -86,7 +86,7 @@ fn evenly(images: &Images) -> Rgb {
 }
 
 /// The weights in a given unit.
-fn in_units(problem: &Problem, images: &Images, request: &Request, scale: Rgb) -> Weighed {
+pub(super) fn in_units(problem: &Problem, images: &Images, request: &Request, scale: Rgb) -> Weighed {
     let mut weighed = weigh::weigh_in(problem, request.tolerance, scale);
     weighed.images = images::weights(images, scale);
     // The faintest are left out: they would not show if all of their light were at one place.

@@ -65,7 +65,7 @@ fn near(centres: &[f64], place: f64, end: f64) -> (Range<usize>, Vec<f64>) {
 }
 
 /// What of its peak a bell that does not end is left out at, in a sum over all pixels.
-const NOTHING: f64 = 1e-10;
+pub(crate) const NOTHING: f64 = 1e-10;
 
 /// The places of points along an axis, each once.
 struct Places {
@@ -186,6 +186,11 @@ impl Images {
         [one.min(other), one.max(other)]
     }
 
+    /// The same photo with some of its images alone.
+    pub(crate) fn only(&self, members: &[usize]) -> Self {
+        Self { all: members.iter().map(|&member| self.all[member].clone()).collect(), ..self.clone() }
+    }
+
     /// What of each colour's flux the ghosts carry in all.
     pub fn share(&self) -> [f64; 3] {
         let whole = self.raster().flux();
@@ -276,7 +281,7 @@ impl Images {
     }
 
     /// The centres of an image's ghosts of all columns of pixels, and of all rows.
-    fn centres_of_pixels(&self, image: &Image) -> [Vec<f64>; 2] {
+    pub(crate) fn centres_of_pixels(&self, image: &Image) -> [Vec<f64>; 2] {
         let places = self.raster_of(image).places();
         let [columns, rows] = [0, 1].map(|axis| {
             let middle = self.axis[axis] + image.along * (places.middle[axis] - self.axis[axis]);

@@ -11,6 +11,7 @@ use crate::frame::Frame;
 use crate::reference;
 use crate::scene::Ghost;
 
+pub(crate) use images::NOTHING;
 pub use images::{Image, Images, Patch};
 
 /// Ghosts, and the picture on which their glare lies. It never changes: a [plan](crate::plan::Plan) owns the problem that
@@ -30,8 +31,7 @@ impl Problem {
 
     /// The glare of these ghosts, and of those that all pixels of a photo make.
     pub fn with_images(ghosts: impl Into<Arc<[Ghost]>>, images: Arc<Images>, frame: Frame) -> Arc<Self> {
-        let images = Some(images).filter(|images| !images.all().is_empty());
-        Arc::new(Self { ghosts: ghosts.into(), images, frame })
+        Self::with_some(ghosts.into(), Some(images), frame)
     }
 
     /// The ghosts, but for those of the photo's pixels; plans name them by their places here.
@@ -47,6 +47,16 @@ impl Problem {
     /// The picture, and the pixels at which the glare is wanted.
     pub fn frame(&self) -> Frame {
         self.frame
+    }
+
+    /// The same ghosts, and of the images those that are given.
+    pub(crate) fn of_images(&self, images: Option<Images>) -> Arc<Self> {
+        Self::with_some(self.ghosts.clone(), images.map(Arc::new), self.frame)
+    }
+
+    fn with_some(ghosts: Arc<[Ghost]>, images: Option<Arc<Images>>, frame: Frame) -> Arc<Self> {
+        let images = images.filter(|images| !images.all().is_empty());
+        Arc::new(Self { ghosts, images, frame })
     }
 
     /// The same sources on another picture, or at other pixels of it.

@@ -102,6 +102,11 @@ impl Raster {
         self.flux
     }
 
+    /// A row's pixels of a colour, and what makes flux of each.
+    pub(crate) fn light(&self, row: usize, channel: usize) -> (&[f32], f64) {
+        (&self.channels[channel].plane.row(row)[..self.size()[0]], self.factors[channel])
+    }
+
     /// Σ of the flux of some of a row's pixels, by row and columns of the window, each times its factor.
     pub(crate) fn along_row(&self, row: usize, columns: Range<usize>, factors: &[f64]) -> [f64; 3] {
         [0, 1, 2].map(|c| {

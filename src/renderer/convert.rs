@@ -33,7 +33,8 @@ pub(super) fn source(plan: &Plan, many_ghosts: bool) -> Source {
     let series = plan.series().map(series_file);
     let local = LOCAL[usize::from(plan.local().is_some_and(|local| local.precision == Precision::Double))];
     let has_direct = plan.layers().iter().any(|layer| matches!(layer, Layer::Direct(_)));
-    match (series, has_direct, plan.local().is_some()) {
+    // The plate's field stands where a local layer's canvas does; a photo's ghosts have no local layer.
+    match (series, has_direct, plan.local().is_some() || plan.plate().is_some()) {
         (Some(series), false, false) => of(series),
         (Some(series), true, false) => {
             Source { parts: Some([series, direct, NONE]), ..summed("\"evaluators/split.glsl\"") }
@@ -45,6 +46,11 @@ pub(super) fn source(plan: &Plan, many_ghosts: bool) -> Source {
         (Some(series), true, true) => Source { parts: Some([series, direct, local]), ..summed(LAYERS) },
         (Some(series), false, true) => Source { parts: Some([series, NONE, local]), ..of(LAYERS) },
     }
+}
+
+/// Whether ghosts are summed at every pixel; where there is nothing at all, none of them are.
+pub(super) fn sums(plan: &Plan) -> bool {
+    plan.series().is_none() && plan.local().is_none() && plan.plate().is_none() || plan.summed() > 0
 }
 
 /// The GLSL function of a series.

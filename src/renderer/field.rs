@@ -2,6 +2,7 @@
 
 use std::rc::Rc;
 
+use super::plate::Plated;
 use super::{convert, lattice, local, tiles};
 use crate::frame::{Frame, Window};
 use crate::gpu::evaluators::Evaluators;
@@ -25,6 +26,7 @@ pub struct Field {
     pub(super) values: FieldPass,
     pub(super) range: RangePass,
     local: LocalPass,
+    plate: Plated,
     /// The frame that the ghosts of a local layer were placed in.
     localised: Option<Frame>,
     pub(super) scene: Option<Plan>,
@@ -49,6 +51,7 @@ impl Field {
             values: FieldPass::new(&runner)?,
             range: RangePass::new(&runner)?,
             local: LocalPass::new(&runner)?,
+            plate: Plated::default(),
             localised: None,
             scene: None,
             held: None,
@@ -67,7 +70,7 @@ impl Field {
             return Ok(());
         }
         self.forget_scene();
-        if plan.series().is_none() && plan.local().is_none() || plan.summed() > 0 {
+        if convert::sums(plan) {
             self.upload_summed(plan)?;
         }
         if let Some(local) = plan.local() {
@@ -77,6 +80,9 @@ impl Field {
         }
         if let Some(series) = plan.series() {
             self.compute_spectrum(plan, series)?;
+        }
+        if let Some(plate) = plan.plate() {
+            self.runner.run("plate", || plate.sheet(plan.problem(), plan.problem().frame()))?;
         }
         self.runner.device().check("computing the spectrum")?;
         self.scene = Some(plan.clone());
@@ -102,6 +108,7 @@ impl Field {
     /// Forgets the scene, so that the next [`Field::set_scene`] computes its spectrum anew.
     pub fn forget_scene(&mut self) {
         (self.held, self.scene) = (None, None);
+        self.plate.forget();
     }
 
     /// The smallest and the largest value of the field over the frame's window, all colours alike, by the reduction
@@ -311,7 +318,7 @@ impl Field {
             self.local.set_in_doubles(local.precision == Precision::Double && !alone);
             self.local.draw(runner, convert::bells(&local.groups), corner, size, frame)?;
         }
-        if plan.series().is_none() && plan.local().is_none() || plan.summed() > 0 {
+        if convert::sums(plan) {
             evaluators.direct([tile.x, tile.y], frame)?;
         }
         let exact = |series: &&Series| series.precision == Precision::Double;
@@ -321,7 +328,7 @@ impl Field {
             let columns = || tiles::phases(tile.width, |i| frame.x(f64::from(tile.x) + i), series.period.x);
             let rows = || tiles::phases(tile.height, |j| frame.y(f64::from(tile.y) + j), series.period.y);
             match (series.evaluator, &series.lattice) {
-                (Evaluator::Direct | Evaluator::Local, _) => {}
+                (Evaluator::Direct | Evaluator::Local | Evaluator::Plate, _) => {}
                 (Evaluator::Series, _) => evaluators.series(runner, [&columns(), &rows()], spectrum)?,
                 (Evaluator::Rows, _) => evaluators.rows(runner, [&columns(), &rows()], spectrum)?,
                 (Evaluator::Grid, Some(summed @ Lattice { on_cpu: true, order, .. }))
@@ -342,6 +349,9 @@ impl Field {
         if plan.local().is_some() {
             // What a series in 64-bit floats was computed with may be bound in its place.
             self.local.bind();
+        }
+        if let Some(plate) = plan.plate() {
+            self.plate.draw(plan, plate, runner, frame, tile)?;
         }
         Ok(convert::source(plan, evaluators.many()))
     }

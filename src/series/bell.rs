@@ -199,8 +199,9 @@ pub(super) fn each_row<S: Shape + ?Sized>(
     size: DVec2,
     visit: &mut dyn FnMut(usize, &[f64]),
 ) {
+    let mut row = vec![0.0; xs.len()];
     for (index, &y) in ys.iter().enumerate() {
-        let row: Vec<f64> = xs.iter().map(|&x| shape.value(DVec2::new(x, y), size)).collect();
+        row.iter_mut().zip(xs).for_each(|(value, &x)| *value = shape.value(DVec2::new(x, y), size));
         visit(index, &row);
     }
 }

@@ -114,7 +114,7 @@ impl Disc {
     }
 
     /// ρ of a point, in sizes. `bells/bladed_disc.glsl` does the same, in the same order.
-    fn radius(&self, at: DVec2) -> f64 {
+    pub(crate) fn radius(&self, at: DVec2) -> f64 {
         match &self.polygon {
             None => at.length(),
             Some(polygon) => polygon.radius(at),

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// Modules that know nothing of GL, windows and the command line.
-const PURE: [&str; 16] = [
+const PURE: [&str; 17] = [
     "choices",
     "compare",
     "error",
@@ -13,6 +13,7 @@ const PURE: [&str; 16] = [
     "optics",
     "photo",
     "plan",
+    "plate",
     "problem",
     "psf",
     "reference",

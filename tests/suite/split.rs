@@ -29,6 +29,8 @@ fn in_favour_of(evaluator: Evaluator) -> CostModel {
     let mut model = CostModel { bell: 0.1, pass: 1.0, quad: 2e4, ..CostModel::default() };
     match evaluator {
         Evaluator::Direct => model.bell = 1e-3,
+        // For photos alone.
+        Evaluator::Plate => {}
         Evaluator::Local => (model.splat, model.quad, model.canvas) = (1e-3, 1e-3, 1e-3),
         Evaluator::Series => model.term = 0.01,
         Evaluator::Rows => (model.profile, model.harmonic) = (1.0, 0.05),

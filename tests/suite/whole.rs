@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use glam::DVec2;
+use vglare::certificate::Certificate;
 use vglare::choices::{LengthUnit, Mix};
 use vglare::compare::compare_in;
 use vglare::frame::{Frame, Window};
@@ -241,18 +242,89 @@ fn every_series_does_it_and_nothing_else() {
     }
 }
 
-#[test]
-fn bells_that_are_too_sharp_are_refused_by_name() {
-    let sharp = |bell: Bell| {
-        let mut look = two_ghosts();
-        look.lens[0].bell = bell;
-        let refused = plan::plan(&look.problem(), &Request::new(1e-4)).expect_err("no series of few enough modes");
-        refused.to_string()
+/// The two wide ghosts, and sharp ones between and beside them: lenses that no series holds.
+fn sharp_lenses() -> Vec<Vec<LensGhost>> {
+    let disc = |rim, blades| Bell::Disc(Disc::new(rim, blades, 10.0 * f64::from(blades.min(1))).unwrap());
+    let sharp = [
+        vec![(Bell::Paraboloid, -1.3, 0.4)],
+        vec![(disc(0.1, 0), -0.7, 0.25), (Bell::Parabola, 0.05, 0.2), (disc(0.1, 5), 2.5, 0.5)],
+        vec![(disc(0.0, 7), 1.0, 0.3), (Bell::CosineSquared, -0.7, 0.03), (Bell::Gaussian, 0.8, 0.01)],
+    ];
+    let ghost = |(bell, along, size): (Bell, f64, f64)| LensGhost {
+        bell,
+        along,
+        size: DVec2::splat(size),
+        tint: [0.7, 0.8, 1.0],
+        share: 1e-3,
     };
-    let reason = sharp(Bell::Paraboloid);
-    assert!(reason.contains("0.302 (paraboloid)") && reason.contains("a looser tolerance"), "{reason}");
-    let reason = sharp(Bell::Disc(Disc::new(0.1, 5, 0.0).unwrap()));
-    assert!(reason.contains("a disc with blades has no series") && reason.contains("--sources lights"), "{reason}");
+    sharp.into_iter().map(|sharp| two_ghosts().lens.into_iter().chain(sharp.into_iter().map(ghost)).collect()).collect()
+}
+
+#[test]
+fn sharp_ghosts_of_every_pixel_are_within_the_bound_beside_smooth_ones() {
+    on_backend(Backend::Egl, |renderer| {
+        for (number, lens) in sharp_lenses().into_iter().enumerate() {
+            let mut look = Look { lens, ..two_ghosts() };
+            if number == 1 {
+                let window = Window { x: -4, y: 3, width: 48, height: 27 };
+                look.frame = Frame { pixel_aspect: 1.5, ..Frame::full(44, 30) }.with_window(window);
+            }
+            let (problem, pixels) = (look.problem(), every_pixel(look.frame));
+            let truth = problem.truth(&pixels);
+            for tolerance in [1e-2, 1e-3, 1e-4] {
+                let plan = plan::plan(&problem, &Request::new(tolerance)).expect("a plan");
+                assert!(plan.plate().is_some(), "{number} {tolerance}: no plate");
+                assert!(plan.predicted.total() <= tolerance, "{number}: {:?}", plan.predicted);
+                renderer.field.set_scene(&plan).expect("a scene");
+                let field = renderer.field.probe(look.frame, &pixels).expect("a field");
+                let measured = compare_in(&truth, &field, [1e-300; 3]).relative;
+                assert!(measured <= plan.predicted.total(), "{number} {tolerance}: {measured:e}, {:?}", plan.predicted);
+                for colour in 0..3 {
+                    let largest = truth.iter().fold(0.0f64, |most, value| most.max(value[colour]));
+                    let unit = plan.scale[colour];
+                    assert!(unit <= largest * (1.0 + 1e-12) && largest <= 2.0 * unit, "{number}: {unit} {largest}");
+                }
+            }
+        }
+    });
+}
+
+#[test]
+fn a_plate_is_asked_for_by_name_and_follows_the_frame() {
+    let look = Look { lens: sharp_lenses().swap_remove(1), ..two_ghosts() };
+    let problem = look.problem();
+    let plan =
+        plan::plan(&problem, &Request { evaluator: Some(Evaluator::Plate), ..Request::new(1e-3) }).expect("a plan");
+    assert_eq!((plan.evaluator(), plan.layers().len()), (Evaluator::Plate, 1));
+    // Another window, and a picture of other pixels.
+    let other = Frame::full(31, 23);
+    let window = Window { x: 6, y: 5, width: 20, height: 11 };
+    on_backend(Backend::Egl, |renderer| {
+        renderer.field.set_scene(&plan).expect("a scene");
+        for frame in [look.frame.with_window(window), other, look.frame] {
+            let pixels = every_pixel(frame);
+            let truth = problem.on(frame).truth(&pixels);
+            let field = renderer.field.probe(frame, &pixels).expect("a field");
+            let measured = compare_in(&truth, &field, plan.scale).relative;
+            assert!(measured <= 1e-3, "{frame:?}: {measured:e}");
+        }
+        let certificate = Certificate::measure_all(&mut renderer.field, &plan, |_| ()).expect("a certificate");
+        assert!(certificate.measured <= certificate.predicted && certificate.measured > 0.0, "{certificate:?}");
+    });
+    for (request, words) in [
+        (
+            Request { evaluator: Some(Evaluator::Plate), degree: Some([4, 4]), ..Request::new(1e-3) },
+            "neither a period nor a degree",
+        ),
+        (Request { evaluator: Some(Evaluator::Grid), ..Request::new(1e-3) }, "the plate sums"),
+    ] {
+        let refused = plan::plan(&problem, &request).expect_err("no such plan").to_string();
+        assert!(refused.contains(words), "{refused}");
+    }
+    let lights = Problem::new(look.ghosts(), look.frame);
+    let refused = plan::plan(&lights, &Request { evaluator: Some(Evaluator::Plate), ..Request::new(1e-3) });
+    let refused = refused.expect_err("no plate of lights").to_string();
+    assert!(refused.contains("a plate has the ghosts of all pixels"), "{refused}");
 }
 
 #[test]
@@ -286,9 +358,13 @@ fn one_lamp_makes_what_one_light_makes() {
 /// What a photo becomes by a look's ghosts of every pixel, which take their light from it.
 #[test]
 fn what_ghosts_carry_is_missing_where_it_came_from() {
-    let look = two_ghosts();
+    missing_where_it_came_from(&two_ghosts());
+    missing_where_it_came_from(&Look { lens: sharp_lenses().swap_remove(1), ..two_ghosts() });
+}
+
+fn missing_where_it_came_from(look: &Look) {
     let (frame, count) = (look.frame, look.frame.window.pixels());
-    let share = [1.0, 0.8, 0.6].map(|tint| 2e-3 * tint);
+    let share = [0, 1, 2].map(|c| look.lens.iter().map(|lens| lens.share * lens.tint[c]).sum::<f64>());
     for knee in [None, Some(Knee { threshold: 0.3, width: 0.1 })] {
         let find = FindOptions {
             threshold: knee.map(|knee| knee.threshold),

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use crate::job::{Planning, VeilPlanned, VeilSeen};
-use crate::plan::{Cost, Evaluator, Faint, Gathering, Group, Plan, Source, Transform};
+use crate::plan::{Cost, Evaluator, Faint, Gathering, Group, Layer, Plan, Source, Transform, Way};
 use crate::raster::Reduction;
 use crate::series::moments::Cells;
 
@@ -23,6 +23,9 @@ pub fn plan(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
     if let Some(local) = plan.local() {
         let pixels = plan.problem().frame().window.pixels() as f64;
         write!(out, ", {:.2} bells at a pixel", local.reached / pixels)?;
+    }
+    if let Some(plate) = plan.plate().filter(|_| plan.evaluator() != Evaluator::Plate) {
+        write!(out, ", and a plate of {} sharp ghosts of every pixel", plate.groups.len())?;
     }
     if let Some(beside) = plan.costs.first().and_then(Cost::beside) {
         write!(out, ", of {} ghosts {beside}", plan.ghosts())?;
@@ -113,14 +116,20 @@ pub fn details(out: &mut dyn Write, planned: &Planning) -> io::Result<()> {
 }
 
 fn groups(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
-    let all = plan.layers().iter().flat_map(|layer| layer.groups().iter().map(|group| (layer.evaluator(), group)));
-    for (index, (evaluator, group)) in all.take(GROUPS).enumerate() {
+    let all = plan
+        .layers()
+        .iter()
+        .flat_map(|layer| layer.groups().iter().enumerate().map(move |(place, group)| (layer, place, group)));
+    for (index, (layer, place, group)) in all.take(GROUPS).enumerate() {
         let label = if index == 0 { "groups" } else { "" };
         let Group { bell, ghosts, smallest, largest, degree: [n, m], .. } = group;
         let more = if largest == smallest { "" } else { " and more" };
         write!(out, "{label:<9}{ghosts} {bell} of {:.3} x {:.3}{more}", smallest.x, smallest.y)?;
         match group.transform {
-            Transform::Direct if evaluator == Evaluator::Local => writeln!(out, ", summed where they reach")?,
+            Transform::Direct if layer.evaluator() == Evaluator::Local => writeln!(out, ", summed where they reach")?,
+            Transform::Direct if let Layer::Plate(plate) = layer => {
+                writeln!(out, ", {}", on_plate(plate.parts[place].way))?
+            }
             Transform::Direct => writeln!(out, ", summed directly")?,
             Transform::Dispatch => writeln!(out, ", degree {n} x {m}")?,
             Transform::Photo(Reduction { level, points: [x, y], transformed, .. }) => {
@@ -141,6 +150,19 @@ fn groups(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
     match plan.groups().count().saturating_sub(GROUPS) {
         0 => Ok(()),
         more => writeln!(out, "         and {more} groups more"),
+    }
+}
+
+/// How an image of the photo is summed on a plate.
+fn on_plate(way: Way) -> String {
+    match way {
+        Way::Products => "summed along rows and columns".into(),
+        Way::Pairs => "each pixel summed where it reaches".into(),
+        Way::Spans => "its flat part summed by spans of rows, its rim by pixels".into(),
+        Way::Lattice { finer, alone_above } => {
+            let alone = if alone_above.is_finite() { ", but for the brightest pixels" } else { "" };
+            format!("on a lattice of {finer} x {finer} points a pixel{alone}")
+        }
     }
 }
 

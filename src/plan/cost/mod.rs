@@ -50,6 +50,8 @@ pub(super) fn estimate(layers: &[Layer], precision: Precision, frame: Frame, mod
             let canvas = if beside { doubles_canvas(frame, model) } else { 0.0 };
             local(&layer.groups, layer.reached, layer.precision, frame, model) + canvas
         }
+        // By the CPU's cores, as veils are.
+        Layer::Plate(plate) => plate.nanoseconds * PLATE * model.veil_add,
         Layer::Series(series) => {
             let spectrum: f64 = series.groups.iter().map(|group| gather::cost(group, &group.transform, model)).sum();
             spectrum + field(series.evaluator, series.precision, &Size::of(series), frame, model)
@@ -60,6 +62,9 @@ pub(super) fn estimate(layers: &[Layer], precision: Precision, frame: Frame, mod
     let (summed, reaching) = (ghosts(Evaluator::Direct), ghosts(Evaluator::Local));
     Cost { evaluator, summed, reaching, milliseconds: nanoseconds * 1e-6 }
 }
+
+/// What a plate's nanoseconds of one core take two of our day, over a multiply-add of theirs.
+const PLATE: f64 = 0.5 / 0.06;
 
 /// What of a series its field's cost depends on.
 pub(super) struct Size {
@@ -92,7 +97,7 @@ pub(super) fn field(evaluator: Evaluator, precision: Precision, size: &Size, fra
             + rows * columns * (f64::from(size.degree[0] + 1) + AROUND_HARMONICS) * model.harmonic
     };
     match evaluator {
-        Evaluator::Direct | Evaluator::Local => 0.0,
+        Evaluator::Direct | Evaluator::Local | Evaluator::Plate => 0.0,
         Evaluator::Series => pixels * size.terms * model.term + 4.0 * model.pass,
         Evaluator::Rows => rows(f64::from(window.height), f64::from(window.width)) + 5.0 * model.pass,
         Evaluator::Grid => {

@@ -29,7 +29,11 @@ pub fn show(ui: &mut Ui, document: &mut Document, stage: &Stage) {
 }
 
 fn evaluator(ui: &mut Ui, document: &mut Document) {
-    let all: Vec<_> = std::iter::once(None).chain(Evaluator::ALL.map(Some)).map(|one| (one, name(one))).collect();
+    let all: Vec<_> = std::iter::once(None)
+        .chain(Evaluator::ALL.map(Some))
+        .chain([Some(Evaluator::Plate)])
+        .map(|one| (one, name(one)))
+        .collect();
     let choices: Vec<_> = all.iter().map(|(one, name)| (*one, name.as_str(), "")).collect();
     let about = "Non-parametric sums the bells, at every pixel or where they reach, parametric sums their series.";
     let (opened, evaluator) = (document.opened.accuracy.evaluator, &mut document.look.accuracy.evaluator);
