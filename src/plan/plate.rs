@@ -56,6 +56,11 @@ impl Plate {
 }
 
 impl Plate {
+    /// Forgets the field that was summed, so that it is summed anew.
+    pub(crate) fn forget(&self) {
+        *self.held.lock().unwrap_or_else(PoisonError::into_inner) = None;
+    }
+
     /// How each image is summed.
     pub fn ways(&self) -> impl Iterator<Item = Way> {
         self.parts.iter().map(|part| part.way)

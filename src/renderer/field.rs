@@ -13,7 +13,7 @@ use crate::gpu::range::RangePass;
 use crate::gpu::runner::Runner;
 use crate::gpu::spectrum::Spectrum;
 use crate::gpu::{Device, PassTime};
-use crate::plan::{Evaluator, Lattice, Plan, Precision, Series};
+use crate::plan::{Evaluator, Lattice, Plan, Plate, Precision, Series};
 use crate::series::waves;
 use crate::{Error, Result};
 
@@ -105,8 +105,9 @@ impl Field {
         self.runner.device().finish();
     }
 
-    /// Forgets the scene, so that the next [`Field::set_scene`] computes its spectrum anew.
+    /// Forgets the scene, so that the next [`Field::set_scene`] computes its spectrum, or its plate, anew.
     pub fn forget_scene(&mut self) {
+        self.scene.iter().filter_map(Plan::plate).for_each(Plate::forget);
         (self.held, self.scene) = (None, None);
         self.plate.forget();
     }

@@ -39,7 +39,13 @@ pub(super) fn tolerance(study: &mut Study<'_>, watch: Watch<'_>) -> Result<Vec<P
     let mut chosen = Vec::new();
     for tolerance in exponents.iter().map(|exponent| rounded(10f64.powf(-exponent))) {
         match plan(&study.problem, &study.request(tolerance)) {
-            Ok(plan) => chosen.push((tolerance, plan.evaluator())),
+            Ok(plan) => {
+                chosen.push((tolerance, plan.evaluator()));
+                // By no evaluator's name alone, since a series may be beside it.
+                if plan.plate().is_some() {
+                    plans.push((Some(tolerance), plan));
+                }
+            }
             Err(reason) => {
                 let point = Point::refused(Sweep::Tolerance, frame, ghosts, Some(tolerance), &reason);
                 refused.push(Point { planner: true, ..point });
