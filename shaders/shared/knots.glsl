@@ -8,14 +8,15 @@ struct Knot {
     float fraction; // past the second of them
 };
 
-// Numbers with KNOT_BITS bits after the point.
+// Numbers with KNOT_BITS bits after the point, and 16 more of the first two.
 layout(std140, binding = BINDING_EVALUATOR) uniform Knots {
-    uvec4 knots_x; // where the first pixel lies, from each to the next, and how many nodes there are; w unused
+    uvec4 knots_x; // where the first pixel lies, from each to the next, how many nodes there are, and 16 bits more of either
     uvec4 knots_y;
 };
 
 Knot knot(uvec4 axis, int pixel) {
-    uint place = axis.x + uint(pixel) * axis.y;
+    uint fine = (axis.w >> 16) + uint(pixel) * (axis.w & 0xffffu);
+    uint place = axis.x + uint(pixel) * axis.y + (fine >> 16);
     const uint one = 1u << KNOT_BITS;
     return Knot(int(place >> KNOT_BITS), float(int(place & (one - 1u))) * (1.0 / float(one)));
 }

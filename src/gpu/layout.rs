@@ -251,7 +251,7 @@ impl SummedGhost for DoubleGhost {
 }
 
 /// Where the pixels along one axis lie between the lattice's nodes: pixel i at `start + i * pitch`, counted from the second
-/// node that the tile has, with [`KNOT_BITS`] bits after the point.
+/// node that the tile has, with [`KNOT_BITS`] bits after the point and 16 more, which carry.
 ///
 /// Integers, so that every tile gives a pixel the same place, bit for bit, and a shader needs no table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
@@ -261,6 +261,10 @@ pub(crate) struct Knots {
     pub pitch: u32,
     /// Nodes that the tile has along the axis.
     pub nodes: u32,
-    pub pad: u32,
+    /// The bits that follow those of `start`, above those that follow `pitch`.
+    pub fine: u32,
 }
 const _: () = assert!(size_of::<Knots>() == 16);
+
+/// Bits that [`Knots::fine`] has of either.
+pub(crate) const FINE_BITS: u32 = 16;

@@ -185,7 +185,7 @@ fn shaders_read_ghosts_of_64_bits_as_they_are_written() {
 
 #[test]
 fn shaders_read_knots_as_they_are_written() {
-    let knots = [Knots { start: 1, pitch: 2, nodes: 3, pad: 4 }, Knots { start: 5, pitch: 6, nodes: 7, pad: 8 }];
+    let knots = [Knots { start: 1, pitch: 2, nodes: 3, fine: 4 }, Knots { start: 5, pitch: 6, nodes: 7, fine: 8 }];
     let view = View {
         declarations: vec![declaration("shared/knots.glsl", "layout(std140, binding = BINDING_EVALUATOR)")],
         uniform: true,
@@ -197,7 +197,7 @@ fn shaders_read_knots_as_they_are_written() {
 
 #[test]
 fn an_echo_of_other_fields_is_not_what_was_written() {
-    let knots = [Knots { start: 1, pitch: 2, nodes: 3, pad: 4 }, Knots { start: 5, pitch: 6, nodes: 7, pad: 8 }];
+    let knots = [Knots { start: 1, pitch: 2, nodes: 3, fine: 4 }, Knots { start: 5, pitch: 6, nodes: 7, fine: 8 }];
     let view = View {
         declarations: vec![
             "layout(std140, binding = BINDING_EVALUATOR) uniform Knots { uvec4 knots_y; uvec4 knots_x; };".into(),

@@ -7,6 +7,7 @@ use glam::DVec2;
 use super::amplitudes::{Rgb, largest};
 use super::decay::Decay;
 use super::{Group, Precision, Request};
+use crate::fast_length::fast_length;
 use crate::frame::Frame;
 use crate::series::{CUBIC, spline_error_of};
 use crate::{Error, Result};
@@ -39,7 +40,7 @@ pub struct Lattice {
     pub nodes: [u32; 2],
     /// Nodes a half wave of the highest harmonic: the oversampling.
     pub oversampling: DVec2,
-    /// Whether the CPU's cores sum the series at the nodes, from modes that the plan has computed.
+    /// Whether the CPU's cores sum the series at the nodes, so many of which make a period that transforms do it.
     pub on_cpu: bool,
     /// A bound of the interpolation's error, relative to the field's largest value.
     #[serde(skip)]
@@ -114,12 +115,12 @@ pub(super) fn coarsest(
     let extent = high - low;
     // The other axis adds about as much, and their product a little.
     let part = 0.49 * budget;
-    let along = |axis: usize, period: f64, extent: f64| {
+    let along = |axis: usize, period: f64| {
         let over = oversampling.unwrap_or_else(|| marginals.least(order, axis, degree[axis], part));
-        step(degree[axis], period, extent, over)
+        step(degree[axis], period, over)
     };
-    let (step_x, over_x) = along(0, period.x, extent.x);
-    let (step_y, over_y) = along(1, period.y, extent.y);
+    let (step_x, over_x) = along(0, period.x);
+    let (step_y, over_y) = along(1, period.y);
     let nodes = |extent: f64, step: f64| (extent / step).floor().min(f64::from(u32::MAX - order)) as u32 + order;
     let step = DVec2::new(step_x, step_y);
     let nodes = [nodes(extent.x, step_x), nodes(extent.y, step_y)];
@@ -135,11 +136,11 @@ pub(super) fn coarsest(
     Ok(Lattice { order, step, nodes, oversampling: DVec2::new(over_x, over_y), on_cpu: false, error: x + y + x * y })
 }
 
-/// The step from node to node for so many nodes a half wave of the highest harmonic, and these.
-fn step(degree: u32, period: f64, extent: f64, oversampling: f64) -> (f64, f64) {
-    match degree {
-        // A constant: any step will do.
-        0 => (extent.max(period), DENSEST),
-        _ => (period / (2.0 * oversampling * f64::from(degree)), oversampling),
-    }
+/// The step from node to node for at least so many nodes a half wave of the highest harmonic, of which so many make a period that
+/// transforms of it are quick; and how many a half wave these are.
+fn step(degree: u32, period: f64, oversampling: f64) -> (f64, f64) {
+    // A constant's are as good as any.
+    let half_waves = 2.0 * f64::from(degree.max(1));
+    let around = fast_length((oversampling * half_waves).ceil() as usize) as f64;
+    (period / around, around / half_waves)
 }

@@ -290,13 +290,16 @@ struct Summed {
 fn cheapest_field(counts: &[u32], period: DVec2, frame: Frame, floats: Precision, model: &CostModel) -> f64 {
     let (low, high) = frame.bounds();
     let degree = [counts.len() as u32 - 1, counts[0] - 1];
-    let nodes = |k: usize| 2.0 * NODES * f64::from(degree[k].max(1)) * (high - low)[k] / period[k] + 4.0;
+    let around = degree.map(|degree| 2.0 * NODES * f64::from(degree.max(1)));
+    let nodes = |k: usize| around[k] * (high - low)[k] / period[k] + 4.0;
     let size = cost::Size {
         terms: counts.iter().map(|&count| f64::from(count)).sum(),
         degree,
         nodes: [nodes(0), nodes(1)],
+        around,
         on_cpu: false,
     };
+    let size = if floats == Precision::Single { size.sooner(model) } else { size };
     let series = [Evaluator::Series, Evaluator::Rows, Evaluator::Grid];
     series
         .into_iter()

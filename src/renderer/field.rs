@@ -23,6 +23,8 @@ pub struct Field {
     pub(super) spectrum: Spectrum,
     evaluators: Evaluators,
     pub(super) exact: Exact,
+    /// The spectrum as the CPU has it, where that sums it at nodes.
+    terms: Option<Vec<[f32; 4]>>,
     pub(super) values: FieldPass,
     pub(super) range: RangePass,
     local: LocalPass,
@@ -48,6 +50,7 @@ impl Field {
             spectrum: Spectrum::new(&runner)?,
             evaluators: Evaluators::new(&runner)?,
             exact: Exact::new(&runner)?,
+            terms: None,
             values: FieldPass::new(&runner)?,
             range: RangePass::new(&runner)?,
             local: LocalPass::new(&runner)?,
@@ -108,7 +111,7 @@ impl Field {
     /// Forgets the scene, so that the next [`Field::set_scene`] computes its spectrum, or its plate, anew.
     pub fn forget_scene(&mut self) {
         self.scene.iter().filter_map(Plan::plate).for_each(Plate::forget);
-        (self.held, self.scene) = (None, None);
+        (self.held, self.scene, self.terms) = (None, None, None);
         self.plate.forget();
     }
 
@@ -332,11 +335,10 @@ impl Field {
                 (Evaluator::Direct | Evaluator::Local | Evaluator::Plate, _) => {}
                 (Evaluator::Series, _) => evaluators.series(runner, [&columns(), &rows()], spectrum)?,
                 (Evaluator::Rows, _) => evaluators.rows(runner, [&columns(), &rows()], spectrum)?,
-                (Evaluator::Grid, Some(summed @ Lattice { on_cpu: true, order, .. }))
-                    if let Some(modes) = &series.modes =>
-                {
+                (Evaluator::Grid, Some(summed @ Lattice { on_cpu: true, order, .. })) => {
                     let nodes = tiles::Nodes::new(summed, series.period, frame, tile);
-                    let values = lattice::values(series, modes, &nodes, *order);
+                    let terms = self.terms.get_or_insert_with(|| spectrum.read());
+                    let values = runner.run("nodes", || lattice::values(&series.counts, terms, &nodes, *order));
                     evaluators.grid_of(runner, &nodes.summed_tile(&values))?;
                 }
                 (Evaluator::Grid, Some(lattice)) => {

@@ -3,12 +3,15 @@
 //! Every pass is pointwise once the spectrum is known, and what a pixel sees is computed from its place in the picture
 //! alone, so tiles meet without a seam, bit for bit.
 
+use std::f64::consts::TAU;
+
 use glam::DVec2;
+use rustfft::num_complex::Complex;
 
 use crate::frame::{Frame, Window};
 use crate::gpu::evaluators::{LatticeTile, SummedTile};
 use crate::gpu::exact::{self, ExactTile};
-use crate::gpu::layout::{KNOT_BITS, Knots};
+use crate::gpu::layout::{FINE_BITS, KNOT_BITS, Knots};
 use crate::plan::{DOUBLE_ORDER, Lattice, Series};
 use crate::series::{phase, spline_gains, waves};
 
@@ -91,6 +94,7 @@ pub(super) struct Nodes {
     counts: [u32; 2],
     origin: DVec2,
     step: DVec2,
+    planned: DVec2,
     period: DVec2,
     knots: [Knots; 2],
     height: u32,
@@ -113,6 +117,7 @@ impl Nodes {
             counts: [columns.nodes, rows.nodes],
             origin,
             step,
+            planned: lattice.step,
             period,
             knots: [columns.knots, rows.knots],
             height: tile.height,
@@ -121,7 +126,11 @@ impl Nodes {
 
     /// Where a node lies along an axis.
     fn position(&self, axis: usize, index: f64) -> f64 {
-        let away = (self.first[axis] + index) * self.step[axis];
+        self.place(axis, index, self.step[axis])
+    }
+
+    fn place(&self, axis: usize, index: f64, step: f64) -> f64 {
+        let away = (self.first[axis] + index) * step;
         self.origin[axis] + if axis == 0 { away } else { -away }
     }
 
@@ -133,6 +142,23 @@ impl Nodes {
     /// The nodes' phases along an axis.
     pub fn phases(&self, axis: usize) -> Vec<u32> {
         phases(self.counts[axis], |index| self.position(axis, index), self.period[axis])
+    }
+
+    /// The nodes around a period along an axis, of which a whole number makes one, and the harmonics at them, divided by what the
+    /// B-spline makes of these. Along y they go down.
+    pub fn ring(&self, axis: usize, degree: u32, order: u32) -> Ring {
+        // That of the plan: where a period is very long, that of the pitch is rounded, and no pixel sees the difference.
+        let step = self.planned[axis];
+        let around = self.period[axis] / step;
+        debug_assert!((around - around.round()).abs() < 1e-6 * around, "{around} nodes make a period");
+        let turns = self.place(axis, 0.0, step) / self.period[axis];
+        let turned = |(n, gain): (usize, f64)| {
+            let turns = n as f64 * turns;
+            let wave = Complex::from_polar(if n == 0 { gain } else { 0.5 * gain }, TAU * (turns - turns.round()));
+            Wave::new(wave.re as f32, wave.im as f32)
+        };
+        let gains = spline_gains(order, degree, step / self.period[axis]);
+        Ring { nodes: around.round() as usize, turned: gains.into_iter().enumerate().map(turned).collect() }
     }
 
     /// What a lattice in 32-bit floats takes beside phases.
@@ -158,7 +184,18 @@ impl Nodes {
     }
 }
 
-/// Nodes from pixel to pixel, with [`KNOT_BITS`] bits after the point.
+/// A wave of a lattice that is transformed.
+pub(super) type Wave = Complex<f32>;
+
+/// The nodes of one period along an axis, and how the harmonics come to the first that a tile needs: what a transform takes.
+pub(super) struct Ring {
+    /// How many there are.
+    pub nodes: usize,
+    /// Of each harmonic its gain times e^{inθ} with the first node's phase θ, and but for the first harmonic one half of that.
+    pub turned: Vec<Wave>,
+}
+
+/// Nodes from pixel to pixel, with as many bits after the point as [`Knots`] have.
 #[derive(Clone, Copy)]
 struct Pitch(u64);
 
@@ -172,15 +209,16 @@ struct Span {
 }
 
 impl Pitch {
-    const BITS: u32 = KNOT_BITS;
+    const BITS: u32 = KNOT_BITS + FINE_BITS;
+    const ONE: u64 = 1 << Self::BITS;
 
     /// Rounded so that the nodes lie closer together than the plan wants, never farther apart.
     fn new(nodes: f64) -> Self {
-        Self(((nodes * f64::from(1 << Self::BITS)).ceil() as u64).max(1))
+        Self(((nodes * Self::ONE as f64).ceil() as u64).max(1))
     }
 
     fn nodes(self) -> f64 {
-        self.0 as f64 / f64::from(1 << Self::BITS)
+        self.0 as f64 / Self::ONE as f64
     }
 
     /// For `count` pixels, the first of them `from` pixels after the lattice's origin.
@@ -189,8 +227,9 @@ impl Pitch {
         let first = place(0) >> Self::BITS;
         let last = place(count - 1) >> Self::BITS;
         let nodes = (last - first) as u32 + order;
-        let start = (place(0) - (first << Self::BITS)) as u32;
-        Span { first, nodes, knots: Knots { start, pitch: self.0 as u32, nodes, pad: 0 } }
+        let [[start, fine_start], [pitch, fine_pitch]] = [place(0) - (first << Self::BITS), self.0]
+            .map(|place| [place >> FINE_BITS, place % (1 << FINE_BITS)].map(|bits| bits as u32));
+        Span { first, nodes, knots: Knots { start, pitch, nodes, fine: (fine_start << FINE_BITS) | fine_pitch } }
     }
 }
 
@@ -243,8 +282,9 @@ mod tests {
                         let count = nodes.count(axis) as u32;
                         assert!(count <= most[axis], "{step} {texture_size}: {count} nodes");
                         let last = [width, height][axis] - 1;
-                        let end =
-                            u64::from(nodes.knots[axis].start) + u64::from(last) * u64::from(nodes.knots[axis].pitch);
+                        let Knots { start, pitch, fine, .. } = nodes.knots[axis];
+                        let carry = (u64::from(fine >> 16) + u64::from(last) * u64::from(fine & 0xffff)) >> 16;
+                        let end = u64::from(start) + u64::from(last) * u64::from(pitch) + carry;
                         assert!(end <= u64::from(u32::MAX), "{step}: the last pixel's place is beyond 32 bits");
                         tightest = tightest.max(count);
                     }
@@ -315,8 +355,10 @@ mod tests {
         let part = Nodes::new(&lattice, DVec2::new(5.0, 4.0), frame, tile);
         let place = |knots: Knots, index: u64| {
             // In u32, like the shader.
-            let place = knots.start.wrapping_add((index as u32).wrapping_mul(knots.pitch));
-            ((place >> Pitch::BITS) as usize, place & ((1 << Pitch::BITS) - 1))
+            let fine = (knots.fine >> FINE_BITS) + index as u32 * (knots.fine & 0xffff);
+            let place =
+                knots.start.wrapping_add((index as u32).wrapping_mul(knots.pitch)).wrapping_add(fine >> FINE_BITS);
+            ((place >> KNOT_BITS) as usize, place & ((1 << KNOT_BITS) - 1))
         };
         for (axis, from, count) in [(0, 200, 77), (1, 113, 64)] {
             for index in 0..count {

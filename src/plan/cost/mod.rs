@@ -2,7 +2,9 @@
 
 mod model;
 
-use super::{Evaluator, Group, Lattice, Layer, Precision, Series, block_shift, gather};
+use glam::DVec2;
+
+use super::{Evaluator, Group, Lattice, Layer, Precision, Series, Transform, block_shift, gather};
 use crate::frame::Frame;
 use crate::series::Bell;
 
@@ -53,14 +55,22 @@ pub(super) fn estimate(layers: &[Layer], precision: Precision, frame: Frame, mod
         // By the CPU's cores, as veils are.
         Layer::Plate(plate) => plate.nanoseconds * PLATE * model.veil_add,
         Layer::Series(series) => {
-            let spectrum: f64 = series.groups.iter().map(|group| gather::cost(group, &group.transform, model)).sum();
-            spectrum + field(series.evaluator, series.precision, &Size::of(series), frame, model)
+            spectrum(series, model) + field(series.evaluator, series.precision, &Size::of(series), frame, model)
         }
     };
     let evaluator = layers.first().map_or(Evaluator::Direct, Layer::evaluator);
     let nanoseconds: f64 = layers.iter().map(one).sum();
     let (summed, reaching) = (ghosts(Evaluator::Direct), ghosts(Evaluator::Local));
     Cost { evaluator, summed, reaching, milliseconds: nanoseconds * 1e-6 }
+}
+
+/// What the spectrum of a series costs, in nanoseconds.
+fn spectrum(series: &Series, model: &CostModel) -> f64 {
+    let one = |group: &Group| match (&group.transform, &series.modes) {
+        (Transform::Dispatch, Some(_)) => gather::looked_at(group),
+        (transform, _) => gather::cost(group, transform, model),
+    };
+    series.groups.iter().map(one).sum()
 }
 
 /// What a plate's nanoseconds of one core take two of our day, over a multiply-add of theirs.
@@ -70,8 +80,9 @@ const PLATE: f64 = 0.5 / 0.06;
 pub(super) struct Size {
     pub terms: f64,
     pub degree: [u32; 2],
-    /// Of the lattice, where there is one.
+    /// Of the lattice, where there is one; and how many of them make a period.
     pub nodes: [f64; 2],
+    pub around: [f64; 2],
     /// Whether the CPU sums the series at them.
     pub on_cpu: bool,
 }
@@ -82,7 +93,8 @@ impl Size {
             terms: series.terms() as f64,
             degree: series.degree(),
             nodes: series.lattice.map_or([0.0; 2], |lattice| lattice.nodes.map(f64::from)),
-            on_cpu: series.lattice.is_some_and(|lattice| lattice.on_cpu) && series.modes.is_some(),
+            around: series.lattice.map_or([0.0; 2], |lattice| (series.period / lattice.step).to_array()),
+            on_cpu: series.lattice.is_some_and(|lattice| lattice.on_cpu),
         }
     }
 }
@@ -103,32 +115,46 @@ pub(super) fn field(evaluator: Evaluator, precision: Precision, size: &Size, fra
         Evaluator::Grid => {
             let [columns, lines] = size.nodes;
             let strips = columns * f64::from(window.height) * model.strip;
-            let summed = if size.on_cpu { by_cpu(size.degree, size.nodes, model) } else { rows(lines, columns) };
+            let summed = if size.on_cpu { by_cpu(size, model) } else { rows(lines, columns) };
             summed + strips + pixels * model.interpolation + GRID_PASSES * model.pass
         }
     }
 }
 
-/// What it takes the CPU's cores to sum a series at the nodes of a lattice, in nanoseconds.
-fn by_cpu(degree: [u32; 2], [columns, rows]: [f64; 2], model: &CostModel) -> f64 {
-    // Multiply-adds in products of matrices, of three colours, a cosine and a sine each.
-    const TERM: f64 = 12.0;
-    const HARMONIC: f64 = 6.0;
-    // Readying the matrices, and moving the values to the device.
+/// What it takes the CPU's cores to transform a series to the nodes of a lattice, in nanoseconds.
+fn by_cpu(size: &Size, model: &CostModel) -> f64 {
+    // Multiply-adds for each node of a period and each time that it can be halved, of three colours.
+    const DOWN: f64 = 15.0;
+    const ACROSS: f64 = 7.5;
+    // Bringing the terms from the device, and the values to it.
+    const TERM: f64 = 10.0;
     const NODE: f64 = 15.0;
-    let [n, m] = degree.map(|degree| f64::from(degree + 1));
-    (TERM * rows * n * m + HARMONIC * rows * columns * n) * model.veil_add + NODE * rows * columns + model.pass
+    let Size { terms, nodes: [columns, rows], around, .. } = *size;
+    let [across, down] = around.map(|around| around * around.max(2.0).log2());
+    let added = DOWN * f64::from(size.degree[0] + 1) * down + ACROSS * rows * across;
+    added * model.veil_add + TERM * terms + NODE * rows * columns + model.pass
+}
+
+impl Size {
+    /// The same, the nodes' values by the CPU's cores where these are sooner done than the device.
+    pub fn sooner(self, model: &CostModel) -> Self {
+        let [columns, rows] = self.nodes;
+        let device = rows * self.terms * model.profile
+            + rows * columns * (f64::from(self.degree[0] + 1) + AROUND_HARMONICS) * model.harmonic;
+        Self { on_cpu: by_cpu(&self, model) < device, ..self }
+    }
 }
 
 /// Whether the CPU's cores are sooner done with a lattice than the device.
-pub(super) fn cpu_is_cheaper(counts: &[u32], lattice: &Lattice, model: &CostModel) -> bool {
-    let (degree, nodes) = ([counts.len() as u32 - 1, counts[0] - 1], lattice.nodes.map(f64::from));
-    let terms: f64 = counts.iter().map(|&count| f64::from(count)).sum();
-    let [columns, rows] = nodes;
-    let device =
-        rows * terms * model.profile + rows * columns * (f64::from(degree[0] + 1) + AROUND_HARMONICS) * model.harmonic;
-    // Calibrations of old know nothing of the CPU.
-    by_cpu(degree, nodes, model) < device
+pub(super) fn cpu_is_cheaper(counts: &[u32], lattice: &Lattice, period: DVec2, model: &CostModel) -> bool {
+    let size = Size {
+        terms: counts.iter().map(|&count| f64::from(count)).sum(),
+        degree: [counts.len() as u32 - 1, counts[0] - 1],
+        nodes: lattice.nodes.map(f64::from),
+        around: (period / lattice.step).to_array(),
+        on_cpu: false,
+    };
+    size.sooner(model).on_cpu
 }
 
 /// What a series costs at least, whatever its terms, in milliseconds.
@@ -137,7 +163,7 @@ pub(super) fn least(evaluator: Evaluator, frame: Frame, model: &CostModel) -> f6
     1e-6 * field(
         evaluator,
         Precision::Single,
-        &Size { terms: 1.0, degree: [0; 2], nodes: [FEWEST_NODES; 2], on_cpu: false },
+        &Size { terms: 1.0, degree: [0; 2], nodes: [FEWEST_NODES; 2], around: [FEWEST_NODES; 2], on_cpu: false },
         frame,
         model,
     )
