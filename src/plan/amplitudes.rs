@@ -12,21 +12,26 @@ use rayon::prelude::*;
 use super::bands::Folded;
 use super::modes::{Mode, Modes};
 use super::rounding::Strength;
-use super::sums::{Axis, Sums, mode};
+use super::sums::{Axis, Sums, mode, through, times};
 use super::weigh::weight;
 use super::{CostModel, Group, Transform, gather, images};
 use crate::problem::{Images, Problem};
 use crate::scene::Ghost;
 use crate::series::{Factor, Modes as Bells, kappa};
 
-/// Ghosts times modes that are looked at, at most: some ten milliseconds, and less than a dispatch over them would take.
+/// Ghosts times modes that are looked at, whatever else they would take: some ten milliseconds.
 const EFFORT: usize = 8_000_000;
 /// Ghosts that one task goes through. Tasks are joined in their order, whatever the number of cores.
 const CHUNK: usize = 128;
+/// Modes that all tasks have between them, of 96 bytes each: there are fewer tasks where there are many modes.
+const ROOM: usize = 1 << 20;
+const FEWEST_TASKS: usize = 4;
 /// Nanoseconds of [`work`], at most.
 const MOST_WORK: f64 = 3e8;
-/// More modes than this are not kept track of: a series of so many takes seconds at any size of picture.
+/// More modes than this are not kept track of: a series of so many takes seconds at any size of picture, where a device sums it.
 const MOST_MODES: usize = 1 << 18;
+/// And where the CPU is sooner done with them, of which each takes some hundred bytes a task.
+const MOST_SOONER: usize = 1 << 19;
 /// And where a photo's images have no other way.
 const MOST_OF_IMAGES: usize = 1 << 20;
 
@@ -36,15 +41,22 @@ pub(super) fn worth_a_try(groups: &[Group]) -> bool {
     FEW * members(groups) <= EFFORT || groups.iter().any(|group| matches!(group.transform, Transform::Photo(_)))
 }
 
-/// Whether to look at so many modes: where the plan needs to know them for any series at all, at more of them.
-pub(super) fn worth_looking(groups: &[Group], counts: &[u32], period: DVec2, needed: bool) -> bool {
+/// Whether to look at so many modes: where the plan needs to know them for any series at all, at more of them; and where the device would
+/// take as long for them as the CPU does, by what is known of it.
+pub(super) fn worth_looking(groups: &[Group], counts: &[u32], period: DVec2, needed: bool, model: &CostModel) -> bool {
     let modes: usize = counts.iter().map(|&count| count as usize).sum();
     let apart = groups.iter().filter(|group| !matches!(group.transform, Transform::Gather(_) | Transform::Photo(_)));
-    let few = modes.saturating_mul(apart.map(|group| group.members.len()).sum()) <= EFFORT;
+    let few = modes.saturating_mul(apart.clone().map(|group| group.members.len()).sum()) <= EFFORT;
     // A photo's images have no other way.
     let only = groups.iter().any(|group| matches!(group.transform, Transform::Photo(_)));
-    let most = if only { MOST_OF_IMAGES } else { MOST_MODES };
-    modes <= most && (only || (few || needed) && work(groups, counts, period) <= MOST_WORK)
+    let work = work(groups, counts, period);
+    let sooner = work <= apart.map(|group| gather::cost(group, &Transform::Dispatch, model)).sum::<f64>();
+    let most = match (only, sooner) {
+        (true, _) => MOST_OF_IMAGES,
+        (_, true) => MOST_SOONER,
+        _ => MOST_MODES,
+    };
+    modes <= most && (only || (few || needed || sooner) && work <= MOST_WORK)
 }
 
 /// What a ghost takes for each mode, about, in nanoseconds.
@@ -52,7 +64,6 @@ pub(super) const MODE: f64 = 3.0;
 
 /// What looking at so many modes costs about, in nanoseconds.
 pub(super) fn work(groups: &[Group], counts: &[u32], period: DVec2) -> f64 {
-    const TRANSFORM: f64 = 15.0;
     // Of each mode: what it adds, and what of it is kept.
     const ALONE: f64 = 60.0;
     let one = |group: &Group| {
@@ -60,12 +71,12 @@ pub(super) fn work(groups: &[Group], counts: &[u32], period: DVec2) -> f64 {
             return gather::cost(group, &group.transform, &CostModel { pass: 0.0, ..CostModel::default() });
         }
         let [n, m] = group.degree;
-        let mine = counts.iter().take(n as usize + 1).map(|&count| count.min(m + 1));
-        let (modes, ghosts) = (mine.map(f64::from).sum::<f64>(), group.members.len() as f64);
+        let (modes, ghosts) =
+            (group.counts(counts).into_iter().map(f64::from).sum::<f64>(), group.members.len() as f64);
         let size = group.smallest / period;
         let bell = group.bell.shape();
         let tables = match bell.modes() {
-            Bells::Radial(_) | Bells::Plane(_) => TRANSFORM * modes,
+            Bells::Radial(_) | Bells::Plane(_) => bell.modes().work() * modes,
             // All ghosts of it have one size.
             Bells::Product(factor) if bell.tabulated() => {
                 factor.work(f64::from(n), size.x) + factor.work(f64::from(m), size.y)
@@ -122,9 +133,9 @@ impl Amplitudes {
         let started = Instant::now();
         let mut sums = View::new(problem, counts, period, scale).sums(groups);
         folded.iter().for_each(|folded| sums.add_folded(counts, folded));
-        let kappas = (0..).zip(counts).flat_map(|(n, &count)| (0..count).map(move |m| kappa(n, m)));
+        let kappas: Vec<f64> = (0..).zip(counts).flat_map(|(n, &count)| (0..count).map(move |m| kappa(n, m))).collect();
         let (terms, values): (Vec<Mode>, Vec<Rgb>) =
-            sums.0.iter().zip(kappas).map(|(sums, kappa)| mode(sums, kappa)).unzip();
+            sums.0.par_iter().zip(kappas).map(|(sums, kappa)| mode(sums, kappa)).unzip();
         let milliseconds = started.elapsed().as_secs_f64() * 1e3;
         let (rest, largest) = beyond(&values, counts);
         Self { modes: Modes::new(counts.to_vec(), terms, milliseconds), values, rest, largest }
@@ -290,7 +301,10 @@ impl<'a> View<'a> {
 
     fn one_by_one(&self, groups: &[&Group]) -> Sums {
         let modes = self.counts.iter().map(|&count| count as usize).sum();
-        let batches: Vec<Sums> = batches(groups).par_iter().map(|batch| self.batch(batch, modes)).collect();
+        let tasks = (ROOM / usize::max(modes, 1)).max(FEWEST_TASKS);
+        let members: usize = groups.iter().map(|group| group.members.len()).sum();
+        let batches = batches(groups, CHUNK.max(members.div_ceil(tasks)));
+        let batches: Vec<Sums> = batches.par_iter().map(|batch| self.batch(batch, modes)).collect();
         let mut batches = batches.into_iter();
         let first = batches.next().unwrap_or_else(|| Sums::zero(modes));
         batches.fold(first, |mut all, batch| {
@@ -303,20 +317,22 @@ impl<'a> View<'a> {
         let mut sums = Sums::zero(modes);
         for &(group, members) in pieces {
             let mut axes = [Axis::new(group.degree[0]), Axis::new(group.degree[1])];
+            let (mine, size) = (group.counts(self.counts), group.smallest / self.period);
+            let mut phases = || {
+                let mut phases = Sums::zero(mine.iter().map(|&count| count as usize).sum());
+                self.add(&mut phases, &mine, members, None, &mut axes);
+                phases
+            };
             match group.bell.shape().modes() {
-                Bells::Product(factor) => self.add(&mut sums, members, Some(factor), &mut axes),
+                Bells::Product(factor) => self.add(&mut sums, self.counts, members, Some(factor), &mut axes),
                 // Ghosts of a bell that brings a table have one size.
                 Bells::Radial(radial) => {
-                    let mut phases = Sums::zero(modes);
-                    self.add(&mut phases, members, None, &mut axes);
-                    let size = group.smallest / self.period;
-                    sums.add_times(&phases, &radial.means(self.counts, size));
+                    let (phases, means) = (phases(), radial.means(&mine, size));
+                    sums.add_some(self.counts, &mine, |at| times(&phases.0[at], means[at]));
                 }
                 Bells::Plane(plane) => {
-                    let mut phases = Sums::zero(modes);
-                    self.add(&mut phases, members, None, &mut axes);
-                    let size = group.smallest / self.period;
-                    sums.add_turned(&phases, &plane.parts(self.counts, size));
+                    let (phases, parts) = (phases(), plane.parts(&mine, size));
+                    sums.add_some(self.counts, &mine, |at| through(&phases.0[at], parts[at]));
                 }
                 // Finding modes enough for it has failed before anyone looks at them.
                 Bells::None => {}
@@ -325,21 +341,21 @@ impl<'a> View<'a> {
         sums
     }
 
-    /// Adds some ghosts of a group, with the coefficients of a factor or with phases alone.
-    fn add(&self, sums: &mut Sums, members: &[u32], factor: Option<&dyn Factor>, axes: &mut [Axis; 2]) {
+    /// Adds some ghosts of a group to so many modes, with the coefficients of a factor or with phases alone.
+    fn add(&self, sums: &mut Sums, counts: &[u32], members: &[u32], factor: Option<&dyn Factor>, axes: &mut [Axis; 2]) {
         for &index in members {
             let ghost = &self.ghosts[index as usize];
             let (size, turns) = (ghost.size / self.period, ghost.center / self.period);
             axes[0].turn(factor, size.x, turns.x);
             axes[1].turn(factor, size.y, turns.y);
-            sums.add_ghost(self.counts, weight(ghost, self.scale), axes);
+            sums.add_ghost(counts, weight(ghost, self.scale), axes);
         }
     }
 }
 
-/// The ghosts of all groups in batches of about [`CHUNK`], each with the group that its ghosts belong to.
-fn batches<'a>(groups: &[&'a Group]) -> Vec<Vec<(&'a Group, &'a [u32])>> {
-    let pieces = groups.iter().flat_map(|&group| group.members.chunks(CHUNK).map(move |members| (group, members)));
+/// The ghosts of all groups in batches of about so many, each with the group that its ghosts belong to.
+fn batches<'a>(groups: &[&'a Group], chunk: usize) -> Vec<Vec<(&'a Group, &'a [u32])>> {
+    let pieces = groups.iter().flat_map(|&group| group.members.chunks(chunk).map(move |members| (group, members)));
     let mut batches: Vec<Vec<(&Group, &[u32])>> = Vec::new();
     let mut room = 0;
     for piece in pieces {
@@ -347,7 +363,7 @@ fn batches<'a>(groups: &[&'a Group]) -> Vec<Vec<(&'a Group, &'a [u32])>> {
             Some(batch) => batch.push(piece),
             None => {
                 batches.push(vec![piece]);
-                room = CHUNK;
+                room = chunk;
             }
         }
         room -= piece.1.len();

@@ -47,7 +47,7 @@ pub use crate::plate::{Part, Way};
 pub use cost::{Cost, CostModel, GRID_PASSES};
 pub use decided::{Faint, Plan};
 pub use direct::Precision;
-pub use gather::{Gathering, Transform};
+pub use gather::{Gatherer, Gathering, Transform};
 pub(crate) use images::MANY_IMAGES;
 pub(crate) use lattice::DOUBLE_ORDER;
 pub use lattice::Lattice;
@@ -84,6 +84,8 @@ pub struct Refusal {
 
 /// Ghosts from which on planning to sum them at every pixel takes longer than planning all else.
 const MANY: usize = 4096;
+/// And from which on layers come before a series of all, which costs more to plan.
+const SOME: usize = 256;
 
 /// Parts of the tolerance that the sources may use up, after what rounding takes.
 mod share {
@@ -159,10 +161,12 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
     if let Some(estimate) = local.take_if(early) {
         found.local(problem, &survey, request, estimate);
     }
-    // To know the modes of many ghosts takes longer than to cut them: where there are layers, no series of all is planned.
+    // To know the modes of many ghosts takes longer than to cut them: where there are layers, no series of all is planned, or only
+    // where that is little beside them.
     let series = found.worth_a_try(problem, request, wanted);
-    let cut = survey.kept() > MANY && found.layers(problem, &survey, request, &series);
-    if cut {
+    let first = survey.kept() > SOME;
+    let cut = first && found.layers(problem, &survey, request, &series);
+    if cut && survey.kept() > MANY {
         found.refuse(&series, "layers of it and others are expected to take less time");
     } else {
         found.series(problem, &survey, request, &series, given);
@@ -170,7 +174,7 @@ fn attempt(problem: &Arc<Problem>, asked: &Request) -> Result<std::result::Resul
     if let Some(estimate) = local {
         found.local(problem, &survey, request, estimate);
     }
-    if !cut {
+    if !first {
         found.layers(problem, &survey, request, &series);
     }
     if let Some(cost) = direct {

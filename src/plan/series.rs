@@ -62,7 +62,7 @@ impl Wide {
         }
         // By weights there may be no series at all.
         let needed = rounding > (1.0 - NEEDED) * request.tolerance;
-        if !amplitudes::worth_looking(&groups, &counts, period, needed) {
+        if !amplitudes::worth_looking(&groups, &counts, period, needed, &request.cost_model) {
             return None;
         }
         survey.effort.spend(amplitudes::work(&groups, &counts, period)).ok()?;
@@ -107,7 +107,7 @@ impl Wide {
         for (band, counts) in bands.iter_mut().zip(&kept) {
             gathering +=
                 images::reduce(&mut band.groups, images, band.period, part * share::IMAGES * request.tolerance);
-            if !amplitudes::worth_looking(&band.groups, counts, band.period, true) {
+            if !amplitudes::worth_looking(&band.groups, counts, band.period, true, &request.cost_model) {
                 return None;
             }
             survey.effort.spend(amplitudes::work(&band.groups, counts, band.period)).ok()?;
@@ -125,7 +125,7 @@ impl Wide {
         let [columns, rows] = [0, 1].map(degree);
         counts.resize(counts.len().max(columns), 1);
         counts.iter_mut().take(columns).for_each(|count| *count = (*count).max(rows as u32));
-        if !amplitudes::worth_looking(&main.groups, &counts, main.period, true) {
+        if !amplitudes::worth_looking(&main.groups, &counts, main.period, true, &request.cost_model) {
             return None;
         }
         survey.effort.spend(amplitudes::work(&main.groups, &counts, main.period)).ok()?;
@@ -291,8 +291,7 @@ impl Brief<'_> {
         let lattice =
             lattice::coarsest(self.precision, degree, self.period, &marginals, self.frame, budget, self.request)?;
         let on_cpu = self.precision == Precision::Single
-            && terms.modes.is_some()
-            && cost::cpu_is_cheaper(&terms.counts, &lattice, &self.request.cost_model);
+            && cost::cpu_is_cheaper(&terms.counts, &lattice, self.period, &self.request.cost_model);
         self.finish(terms, Some(Lattice { on_cpu, ..lattice }))
     }
 

@@ -86,26 +86,33 @@ impl Sums {
         }
     }
 
-    /// Adds the others, each mode through a bell that has these parts.
-    pub fn add_turned(&mut self, others: &Self, parts: &[[f64; 4]]) {
-        for ((mine, theirs), parts) in self.0.iter_mut().zip(&others.0).zip(parts) {
-            for colour in 0..3 {
-                let turned = turned([0, 3, 6, 9].map(|part| theirs[part + colour]), *parts);
-                for (part, value) in turned.into_iter().enumerate() {
-                    mine[3 * part + colour] += value;
-                }
+    /// Adds what others have for some of the modes, which are counted one row after the other.
+    pub fn add_some(&mut self, counts: &[u32], some: &[u32], other: impl Fn(usize) -> [f64; 12]) {
+        let mut at = 0;
+        for (row, &some) in rows(counts).zip(some) {
+            for mine in self.0[row].iter_mut().take(some as usize) {
+                mine.iter_mut().zip(other(at)).for_each(|(mine, theirs)| *mine += theirs);
+                at += 1;
             }
         }
     }
+}
 
-    /// Adds the others, each mode times its factor.
-    pub fn add_times(&mut self, others: &Self, factors: &[f64]) {
-        for ((mine, theirs), factor) in self.0.iter_mut().zip(&others.0).zip(factors) {
-            for (mine, theirs) in mine.iter_mut().zip(theirs) {
-                *mine += factor * theirs;
-            }
+/// A mode times a factor.
+pub(super) fn times(sums: &[f64; 12], factor: f64) -> [f64; 12] {
+    sums.map(|sum| factor * sum)
+}
+
+/// A mode through a bell that has these parts.
+pub(super) fn through(sums: &[f64; 12], parts: [f64; 4]) -> [f64; 12] {
+    let mut through = [0.0; 12];
+    for colour in 0..3 {
+        let turned = turned([0, 3, 6, 9].map(|part| sums[part + colour]), parts);
+        for (part, value) in turned.into_iter().enumerate() {
+            through[3 * part + colour] = value;
         }
     }
+    through
 }
 
 /// What the products of real and imaginary parts along x and y, re·re, im·re, re·im and im·im, become in a bell that has these parts, as

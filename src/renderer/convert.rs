@@ -153,7 +153,15 @@ pub(super) fn double_ghost(ghost: &Ghost, weight: [f64; 3], bell: u32) -> Double
 /// The coefficients of a group's bell at one size, as the spectrum takes them.
 pub(super) fn table(series: &Series, group: &Group, size: DVec2) -> Vec<[f32; 4]> {
     let single = |coefficient: [f64; 4]| coefficient.map(|x| x as f32);
-    group.bell.shape().modes().table(&series.counts, size / series.period).into_iter().map(single).collect()
+    let mine = group.counts(&series.counts);
+    let mut table = group.bell.shape().modes().table(&mine, size / series.period).into_iter().map(single);
+    let mut all = Vec::with_capacity(series.terms());
+    for (&count, mine) in series.counts.iter().zip(mine.iter().chain(std::iter::repeat(&0))) {
+        let end = all.len() + count as usize;
+        all.extend(table.by_ref().take(*mine as usize));
+        all.resize(end, [0.0; 4]);
+    }
+    all
 }
 
 /// The modes that the series keeps of those that the plan has computed, as the spectrum has them: three vec4 a mode.

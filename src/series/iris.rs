@@ -11,16 +11,16 @@ mod cut;
 mod transform;
 
 use std::f64::consts::PI;
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use glam::DVec2;
 use pulp::Arch;
 
 use super::bell::{Modes, Shape};
 use super::disc::MOST_BLADES;
-use super::frequencies::Spectrum;
 use super::tails::copies;
 pub use cut::Cut;
+use transform::Waves;
 
 /// The softest edge, and the sharpest: of a sharper one a disc does as well, which ends.
 const EDGES: [f64; 2] = [0.01, 0.3];
@@ -50,8 +50,8 @@ struct Inner {
     /// The steepest place of all.
     steepest: f64,
     moments: OnceLock<Moments>,
-    /// The distance of its samples, and their transform.
-    spectrum: OnceLock<(f64, Spectrum)>,
+    /// What is known of its transform.
+    waves: Mutex<Option<Arc<Waves>>>,
 }
 
 /// ∫∫ of it, and the mean square distance from its centroid along one axis, the mean of both.
@@ -111,7 +111,7 @@ impl Iris {
             // whose directions differ, less than this.
             _ => 0.3 * peak / edge,
         };
-        let (moments, spectrum) = (OnceLock::new(), OnceLock::new());
+        let (moments, waves) = Default::default();
         let (cuts, whole_peak) = (Vec::new(), peak);
         Self(Arc::new(Inner {
             edge,
@@ -124,7 +124,7 @@ impl Iris {
             whole_peak,
             steepest,
             moments,
-            spectrum,
+            waves,
         }))
     }
 

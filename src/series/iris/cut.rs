@@ -128,7 +128,7 @@ impl Iris {
         let steepest = peak * (whole.steepest / whole.peak + cuts.iter().map(of_cut).sum::<f64>());
         let (sides, whole_peak) = (whole.sides.clone(), whole.whole_peak);
         let Inner { edge, blades, rotation, apothem, .. } = *whole;
-        let (moments, spectrum) = Default::default();
+        let (moments, waves) = Default::default();
         Self(Arc::new(Inner {
             edge,
             blades,
@@ -140,7 +140,7 @@ impl Iris {
             whole_peak,
             steepest,
             moments,
-            spectrum,
+            waves,
         }))
     }
 

@@ -5,13 +5,25 @@
 //! hold it for all numbers of blades.
 
 use std::f64::consts::{PI, TAU};
+use std::sync::{Arc, PoisonError};
 
 use glam::DVec2;
 use ndarray::Array2;
 
 use super::{Iris, NOTHING};
 use crate::series::bell::{Bounded, Plane, Shape as _};
-use crate::series::frequencies::Spectrum;
+use crate::series::frequencies::{self, Spectrum};
+
+/// Parts of all waves that it is worth to know alone.
+const PARTS: [f64; 2] = [0.25, 0.5];
+
+/// The transform of an iris up to z radians for each size: that of samples so far apart.
+#[derive(Debug)]
+pub(super) struct Waves {
+    z: f64,
+    step: f64,
+    spectrum: Spectrum,
+}
 
 impl Iris {
     /// Values at points of a square lattice about the centre, row by row, and their distance: such that sums of them over waves no faster
@@ -28,19 +40,25 @@ impl Iris {
         (step, values)
     }
 
-    /// Their transform at waves up to z = NOTHING / η, beyond which there is none, and their distance.
-    fn spectrum(&self) -> &(f64, Spectrum) {
-        self.0.spectrum.get_or_init(|| {
-            let (step, values) = self.samples(NOTHING / self.fall());
-            // The farther from the ends of a lattice, the closer is a transform: with so many zeros around to some 1e-14.
-            let zeros = values.nrows() / 5;
-            let place = |index: usize| index.checked_sub(zeros).filter(|index| *index < values.nrows());
-            let value = |_, column, row| {
-                let at = place(row).zip(place(column));
-                at.map_or(0.0, |at| values[at])
-            };
-            (step, Spectrum::new(1, [values.nrows() + 2 * zeros; 2], value))
-        })
+    /// Their transform at waves up to z, or somewhat farther, or where that is less to z = NOTHING / η, beyond which there is none.
+    fn waves(&self, z: f64) -> Arc<Waves> {
+        let all = NOTHING / self.fall();
+        let known = || self.0.waves.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(waves) = known().as_ref().filter(|waves| z <= waves.z || waves.z >= all) {
+            return waves.clone();
+        }
+        // Nobody waits meanwhile: a core that waits for others may be given another ghost of the same iris.
+        let z = PARTS.map(|part| part * all).into_iter().find(|&part| z <= part).unwrap_or(all);
+        let (step, values) = self.samples(z);
+        // The farther from the ends of a lattice, the closer is a transform: with so many zeros around to some 1e-14.
+        let zeros = values.nrows() / 5;
+        let place = |index: usize| index.checked_sub(zeros).filter(|index| *index < values.nrows());
+        let value = |_, column, row| {
+            let at = place(row).zip(place(column));
+            at.map_or(0.0, |at| values[at])
+        };
+        let spectrum = Spectrum::new(1, [values.nrows() + 2 * zeros; 2], value);
+        known().insert(Arc::new(Waves { z, step, spectrum })).clone()
     }
 
     /// η at the poles; that of the nearest.
@@ -76,18 +94,21 @@ impl Bounded for Iris {
 
     /// The lattice's own values, once.
     fn preparation(&self) -> f64 {
-        let side = 2.0 * self.radius_of(NOTHING) * NOTHING / (TAU * self.fall());
-        side * side * (10.0 + 8.0 * f64::from(self.blades()))
+        let side = 2.0 * self.radius_of(NOTHING) * (1.0 + PARTS[1]) * NOTHING / (TAU * self.fall());
+        let steps = f64::from(self.blades()) + self.cuts().len() as f64;
+        side * side * (10.0 + 8.0 * steps) + frequencies::work([(1.4 * side) as usize; 2]) / 3.0
     }
 }
 
 impl Plane for Iris {
     fn parts(&self, counts: &[u32], size: DVec2) -> Vec<[f64; 4]> {
-        let (step, spectrum) = self.spectrum();
+        let most = counts.iter().max().map_or(0, |&count| count as usize);
+        let fastest = DVec2::new(counts.len() as f64, most as f64) * TAU * size;
+        let waves = self.waves(fastest.max_element());
+        let Waves { step, spectrum, .. } = &*waves;
         let first = TAU * size * *step;
         // Of faster waves there is nothing.
         let within = |first: f64, harmonics: usize| harmonics.min((PI / first) as usize + 1);
-        let most = counts.iter().max().map_or(0, |&count| count as usize);
         let harmonics = [within(first.x, counts.len()), within(first.y, most)];
         let waves = spectrum.waves(0, first.to_array(), harmonics);
         let scale = step * step * size.element_product();
