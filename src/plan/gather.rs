@@ -3,11 +3,11 @@
 use glam::DVec2;
 
 use super::decay::Decay;
-use super::{CostModel, Group, Prediction, images, share, weigh};
+use super::{CostModel, Group, Prediction, amplitudes, images, share, weigh};
 use crate::raster::Reduction;
 use crate::scene::Ghost;
 use crate::series::Bell;
-use crate::series::moments::{Cells, Point, Sizes, Sums, order_within, sizes_within};
+use crate::series::moments::{Cells, Grid, Point, Sizes, Sums, order_within, sizes_within};
 
 /// How the spectrum of a group comes about.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -27,11 +27,21 @@ pub enum Transform {
 /// as so many of a few sizes.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Gathering {
-    /// The cells.
+    /// By what.
     #[serde(flatten)]
-    pub cells: Cells,
+    pub by: Gatherer,
     /// How many sizes stand for all.
     pub sizes: u32,
+}
+
+/// What ghosts are gathered by.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[serde(untagged)]
+pub enum Gatherer {
+    /// The moments of cells: few harmonics.
+    Cells(Cells),
+    /// A transform of what is spread over a lattice: many.
+    Grid(Grid),
 }
 
 impl Transform {
@@ -39,8 +49,12 @@ impl Transform {
     pub fn moments(&self) -> f64 {
         match self {
             Self::Dispatch | Self::Direct | Self::Photo(_) => 0.0,
-            Self::Gather(Gathering { cells, sizes }) => {
-                f64::from(*sizes) * (EACH + f64::from(cells.orders[0]) * f64::from(cells.orders[1]))
+            Self::Gather(Gathering { by, sizes }) => {
+                let moments = match by {
+                    Gatherer::Cells(Cells { orders, .. }) => orders.iter().map(|&order| f64::from(order)).product(),
+                    Gatherer::Grid(grid) => grid.work()[0],
+                };
+                f64::from(*sizes) * (EACH + moments)
             }
         }
     }
@@ -61,7 +75,11 @@ impl Gathering {
                 let weight = weigh::weight(of(k), scale).map(|weight| share * weight);
                 Point { turns: (turns - turns.floor()).to_array(), weight }
             };
-            (size, self.cells.sums(count, point, group.degree))
+            let sums = match &self.by {
+                Gatherer::Cells(cells) => cells.sums(count, point, group.degree),
+                Gatherer::Grid(grid) => grid.sums(count, point, group.degree),
+            };
+            (size, sums)
         };
         sizes.sizes().zip(0..).map(one).collect()
     }
@@ -133,7 +151,7 @@ pub(super) fn likely(group: &Group, model: &CostModel) -> f64 {
     // Sizes, moments along an axis, and cells along one for each harmonic.
     const SIZES: f64 = 10.0;
     const MOMENTS: f64 = 8.0;
-    let dispatch = cost(group, &Transform::Dispatch, model);
+    let dispatch = cost(group, &Transform::Dispatch, model).min(looked_at(group));
     let sizes = if group.smallest == group.largest { 1.0 } else { SIZES };
     let alike = sizes == 1.0 || group.bell == Bell::Gaussian && group.proportional;
     if group.ghosts < FEWEST || !alike || dispatch < FEW * model.pass {
@@ -162,23 +180,47 @@ fn cheaper(group: &Group, period: DVec2, budget: f64, model: &CostModel, otherwi
     let each = 0.49 * (left / gain).min(0.05);
     let axis = |degree: u32| candidates(degree).map(move |count| (count, order_within(degree, count, each)));
     let (mut best, mut least) = (None, otherwise);
+    let grid = Gathering { by: Gatherer::Grid(Grid::within(group.degree, each)), sizes };
+    let of_grid = cost(group, &Transform::Gather(grid), model);
+    if of_grid < least {
+        (best, least) = (Some(grid), of_grid);
+    }
     for (count_x, order_x) in axis(group.degree[0]) {
         for (count_y, order_y) in axis(group.degree[1]).filter(|(count_y, _)| count_x * count_y <= MOST_CELLS) {
             let cells = Cells { counts: [count_x, count_y], orders: [order_x, order_y] };
-            let gathering = Gathering { cells, sizes };
+            let gathering = Gathering { by: Gatherer::Cells(cells), sizes };
             let cost = cost(group, &Transform::Gather(gathering), model);
             if cost < least {
                 (best, least) = (Some(gathering), cost);
             }
         }
     }
-    best.map(|gathering| (gathering, off * group.weight + gain * gathering.cells.error(group.degree)))
+    best.map(|gathering| {
+        let error = match gathering.by {
+            Gatherer::Cells(cells) => cells.error(group.degree),
+            Gatherer::Grid(grid) => grid.error(group.degree),
+        };
+        (gathering, off * group.weight + gain * error)
+    })
 }
 
 /// Numbers of cells along an axis that are worth a try: from a few harmonics a cell to a few cells a harmonic.
 fn candidates(degree: u32) -> impl Iterator<Item = u32> {
     let counts = (-4..=7).map(move |step| (f64::from(degree.max(1)) * 2f64.powf(0.5 * f64::from(step))).ceil());
     counts.map(|count| count as u32)
+}
+
+/// What a core takes for a multiply-add of a transform, in nanoseconds.
+const ADDED: f64 = 0.8;
+
+/// What a nanosecond of a core takes on those that there are.
+const CORES: f64 = 0.5;
+
+/// What the spectrum of a group costs where the plan has looked at its modes, of each ghost by itself, in nanoseconds.
+pub(super) fn looked_at(group: &Group) -> f64 {
+    // Half of the rectangle.
+    let modes: f64 = group.degree.iter().map(|&degree| f64::from(degree + 1)).product();
+    0.5 * CORES * modes * (group.ghosts as f64 * amplitudes::MODE + group.bell.shape().modes().work())
 }
 
 /// What the spectrum of a group costs, in nanoseconds.
@@ -188,8 +230,16 @@ pub(super) fn cost(group: &Group, transform: &Transform, model: &CostModel) -> f
     match transform {
         Transform::Direct => 0.0,
         Transform::Photo(reduction) => images::cost(group, *reduction),
-        Transform::Dispatch => ghosts * modes[0] * modes[1] * model.spectrum,
-        Transform::Gather(Gathering { cells, sizes }) => {
+        // What is tabulated the CPU computes before, of half of the rectangle.
+        Transform::Dispatch => {
+            let tables = 0.5 * group.bell.shape().modes().work() * CORES;
+            modes[0] * modes[1] * (ghosts * model.spectrum + tables)
+        }
+        Transform::Gather(Gathering { by: Gatherer::Grid(grid), sizes }) => {
+            let transformed = f64::from(*sizes) * (CORES * ADDED * grid.work()[1] + model.pass);
+            model.moment * ghosts * transform.moments() + transformed
+        }
+        Transform::Gather(Gathering { by: Gatherer::Cells(cells), sizes }) => {
             let ([x, y], [p, q]) = (cells.counts.map(f64::from), cells.orders.map(f64::from));
             let sizes = f64::from(*sizes);
             // Then along x for each cell that has a ghost, and along y for each row of them: four sums of products.

@@ -38,13 +38,14 @@ pub struct Group {
     pub transform: Transform,
 }
 
-/// Groups the ghosts that are not dropped: sizes within half an octave share a group, or equal sizes where the bell's
-/// coefficients come from a table.
+/// Groups the ghosts that are not dropped: sizes within half an octave, or less where there are many, share a group, or equal sizes where
+/// the bell's coefficients come from a table.
 pub(super) fn group(ghosts: &[Ghost], weights: &[f64]) -> Vec<Group> {
+    let steps = if ghosts.len() < MANY { FEW_STEPS } else { MANY_STEPS };
     let chunks = by_chunks(ghosts, weights, |ghosts| {
         let (mut slots, mut groups) = (Slots::new(), Vec::<(Group, Vec<u32>)>::new());
         for (index, ghost, weight) in ghosts {
-            let slot = slots.slot(&ghost.bell, key(&ghost.bell, ghost.size));
+            let slot = slots.slot(&ghost.bell, key(&ghost.bell, ghost.size, steps));
             if slot == groups.len() {
                 groups.push((Group::new(&ghost.bell, ghost.size), Vec::new()));
             }
@@ -56,7 +57,7 @@ pub(super) fn group(ghosts: &[Ghost], weights: &[f64]) -> Vec<Group> {
     });
     let (mut slots, mut groups) = (Slots::new(), Vec::<(Group, Vec<u32>)>::new());
     for (group, members) in chunks.iter().flatten() {
-        let slot = slots.slot(&group.bell, key(&group.bell, group.smallest));
+        let slot = slots.slot(&group.bell, key(&group.bell, group.smallest, steps));
         match groups.get_mut(slot) {
             Some((joined, others)) => {
                 joined.join(group);
@@ -72,6 +73,12 @@ impl Group {
     /// Whether its ghosts are those of a photo's pixels.
     pub fn is_of_photo(&self) -> bool {
         matches!(self.transform, Transform::Photo(_))
+    }
+
+    /// How many of the kept modes of y it adds to beside each harmonic of x.
+    pub(crate) fn counts(&self, kept: &[u32]) -> Vec<u32> {
+        let [n, m] = self.degree;
+        kept.iter().take(n as usize + 1).map(|&count| count.min(m + 1)).collect()
     }
 
     fn new(bell: &Bell, size: DVec2) -> Self {
@@ -117,17 +124,23 @@ fn alike(a: DVec2, b: DVec2) -> bool {
     (a.x * b.y - a.y * b.x).abs() <= 1e-14 * a.x * b.y
 }
 
-/// What the ghosts of a group have in common.
-fn key(bell: &Bell, size: DVec2) -> [i64; 2] {
-    let key = if bell.shape().tabulated() { |size: f64| size.to_bits() as i64 } else { half_octave };
-    [key(size.x), key(size.y)]
+/// Ghosts from which groups are of closer sizes: the closer they are, the fewer sizes stand for all of them where they are gathered.
+const MANY: usize = 50_000;
+/// Groups an octave, of few ghosts and of many.
+const FEW_STEPS: i32 = 2;
+const MANY_STEPS: i32 = 8;
+
+/// What the ghosts of a group have in common, of so many groups an octave.
+fn key(bell: &Bell, size: DVec2, steps: i32) -> [i64; 2] {
+    let tabulated = bell.shape().tabulated();
+    size.to_array().map(|size| if tabulated { size.to_bits() as i64 } else { step(size, steps) })
 }
 
-/// ⌊2 log2 x⌋ for a positive normal number, by its exponent.
-fn half_octave(x: f64) -> i64 {
-    let exponent = (x.to_bits() >> 52) as i64;
+/// ⌊steps log2 x⌋, and a constant, for a positive normal number: by its exponent, and by that of a power of the rest.
+fn step(x: f64, steps: i32) -> i64 {
+    let exponent = |x: f64| (x.to_bits() >> 52) as i64;
     let mantissa = f64::from_bits(x.to_bits() & (u64::MAX >> 12) | 1f64.to_bits());
-    2 * exponent + i64::from(mantissa >= std::f64::consts::SQRT_2)
+    i64::from(steps) * exponent(x) + exponent(mantissa.powi(steps))
 }
 
 /// The whole rectangle of modes for every group: the prototype's choice, and that of a degree given by hand.
@@ -176,10 +189,5 @@ pub(super) fn fewest(groups: &mut [Group], period: DVec2, budget: f64, effort: &
 
 /// A bound of what the kept modes leave out at any pixel.
 pub(super) fn error(groups: &[Group], period: DVec2, counts: &[u32]) -> f64 {
-    let one = |group: &Group| {
-        let mine: Vec<u32> =
-            counts.iter().take(group.degree[0] as usize + 1).map(|&count| count.min(group.degree[1] + 1)).collect();
-        group.weight * Decay::new(group, period).beyond(&mine)
-    };
-    groups.iter().map(one).sum()
+    groups.iter().map(|group| group.weight * Decay::new(group, period).beyond(&group.counts(counts))).sum()
 }

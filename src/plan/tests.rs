@@ -197,12 +197,17 @@ fn amplitudes_know_which_ghosts_add_up_and_which_cancel() {
 }
 
 #[test]
-fn too_many_ghosts_for_their_modes_are_not_looked_at() {
+fn too_many_ghosts_for_their_modes_are_not_looked_at_where_a_device_is_sooner_done() {
     let ghosts = vec![ghost([0.1, 0.1], [0.3, 0.3]); 80_000];
     let problem = Problem::new(ghosts.as_slice(), Frame::full(64, 36));
     let mut survey = Survey::new(&problem, &Request::new(1e-3));
     let counts = terms::rectangle(&mut survey.groups, [12, 8]);
-    assert!(!amplitudes::worth_looking(&survey.groups, &counts, DVec2::new(8.0, 4.0), false));
+    let worth = |spectrum: f64| {
+        let model = CostModel { spectrum, ..CostModel::default() };
+        amplitudes::worth_looking(&survey.groups, &counts, DVec2::new(8.0, 4.0), false, &model)
+    };
+    // Nanoseconds for a term: of a graphics card, and of a renderer in software.
+    assert!(!worth(0.05) && worth(8.0));
 }
 
 #[test]
@@ -333,7 +338,8 @@ fn modes_of_gathered_gaussians_are_those_of_each_by_itself() {
         amplitudes::modes(&problem, &groups, &counts, period, survey.weighed.scale)
     };
     let cells = Cells { counts: [9, 14], orders: [14, 14] };
-    let (each, gathered) = (of(Transform::Dispatch), of(Transform::Gather(Gathering { cells, sizes: 10 })));
+    let (each, gathered) =
+        (of(Transform::Dispatch), of(Transform::Gather(Gathering { by: Gatherer::Cells(cells), sizes: 10 })));
     let largest = each.as_flattened().as_flattened().iter().fold(0.0f64, |most, term| most.max(term.abs()));
     assert!(each.len() == 60 && largest > 0.01, "{largest}");
     for (each, gathered) in each.as_flattened().as_flattened().iter().zip(gathered.as_flattened().as_flattened()) {

@@ -20,6 +20,7 @@ use realfft::RealFftPlanner;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
+use super::special::bspline;
 use crate::fast_length::fast_length;
 
 /// Points that a B-spline reaches.
@@ -155,25 +156,9 @@ struct Spline {
 }
 
 impl Spline {
-    /// By the recursion of Cox and de Boor.
     fn at(place: f64) -> Self {
         let below = place.floor();
-        let t = place - below;
-        let mut weights = [0.0; ORDER];
-        weights[0] = 1.0;
-        for order in 1..ORDER {
-            let scale = (order as f64).recip();
-            let mut carried = 0.0;
-            for (k, weight) in weights.iter_mut().enumerate().take(order) {
-                // Of a knot that is `k` before the place's own.
-                let right = (k + 1) as f64 - t;
-                let left = t + (order - 1 - k) as f64;
-                let part = *weight * scale;
-                *weight = carried + right * part;
-                carried = left * part;
-            }
-            weights[order] = carried;
-        }
+        let weights = bspline(place - below);
         Self { first: below as isize - (ORDER as isize / 2 - 1), weights }
     }
 }

@@ -3,9 +3,9 @@
 use std::io::{self, Write};
 
 use crate::job::{Planning, VeilPlanned, VeilSeen};
-use crate::plan::{Cost, Evaluator, Faint, Gathering, Group, Layer, Plan, Source, Transform, Way};
+use crate::plan::{Cost, Evaluator, Faint, Gatherer, Gathering, Group, Layer, Plan, Source, Transform, Way};
 use crate::raster::Reduction;
-use crate::series::moments::Cells;
+use crate::series::moments::{Cells, Grid};
 
 /// Groups that are told one by one.
 const GROUPS: usize = 12;
@@ -140,8 +140,14 @@ fn groups(out: &mut dyn Write, plan: &Plan) -> io::Result<()> {
                     _ => writeln!(out, "moments on {x} x {y} points")?,
                 }
             }
-            Transform::Gather(Gathering { cells: Cells { counts: [x, y], orders: [p, q] }, sizes }) => {
-                write!(out, ", degree {n} x {m}, gathered in {x} x {y} cells of {p} x {q} moments")?;
+            Transform::Gather(Gathering { by, sizes }) => {
+                write!(out, ", degree {n} x {m}, gathered ")?;
+                match by {
+                    Gatherer::Cells(Cells { counts: [x, y], orders: [p, q] }) => {
+                        write!(out, "in {x} x {y} cells of {p} x {q} moments")?;
+                    }
+                    Gatherer::Grid(Grid { nodes: [x, y] }) => write!(out, "by a transform of {x} x {y} nodes")?,
+                }
                 let sizes = if sizes == 1 { String::new() } else { format!(" for each of {sizes} sizes") };
                 writeln!(out, "{sizes}")?;
             }

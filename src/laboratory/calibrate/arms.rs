@@ -10,7 +10,7 @@ use crate::frame::Frame;
 use crate::gpu::Device;
 use crate::laboratory::bench::scenes::{by, by_hand, scattered};
 use crate::measure::Rounds;
-use crate::plan::{DOUBLE_ORDER, Evaluator, Gathering, Lattice, Plan, Precision, Transform};
+use crate::plan::{DOUBLE_ORDER, Evaluator, Gatherer, Gathering, Lattice, Plan, Precision, Transform};
 use crate::renderer::{Picture, Scatter, Settings};
 use crate::scene::Ghost;
 use crate::series::CUBIC;
@@ -269,7 +269,7 @@ fn gathered(ghosts: &[Ghost], frame: Frame) -> Result<Plan> {
     let plan = by_hand(Evaluator::Rows, ghosts, frame, [2, 2])?;
     Ok(plan.with_series(|series| {
         for group in &mut series.groups {
-            group.transform = Transform::Gather(Gathering { cells: CELLS, sizes: 1 });
+            group.transform = Transform::Gather(Gathering { by: Gatherer::Cells(CELLS), sizes: 1 });
         }
     }))
 }

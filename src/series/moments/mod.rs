@@ -19,11 +19,13 @@
 //! for this harmonic and all lower ones. All is in f64.
 
 mod collect;
+mod grid;
 mod sizes;
 mod spread;
 
 use std::f64::consts::PI;
 
+pub use grid::Grid;
 pub use sizes::{Sizes, sizes_within};
 
 /// A place in turns, in the period [0, 1) along each axis, and a weight for each colour.
