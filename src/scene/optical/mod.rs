@@ -63,8 +63,10 @@ pub struct Optical {
     paths: Arc<[usize]>,
 }
 
-/// Lights whose ghosts have the outline that rims leave; those of more have their light and their middle.
+/// Lights whose ghosts have the outline that rims leave, at most; those of others have their light and their middle.
 const MOST_CUT: usize = 4;
+/// Where there are more, the brightest have it that outshine all others so many times.
+const OUTSHINE: f64 = 2.0;
 
 impl PartialEq for Optical {
     /// Whichever picture it was fitted to; and looks are compared again and again.
@@ -204,23 +206,23 @@ impl Optical {
         self.lens.ghosts.par_iter().zip(&*self.paths).map(at).collect()
     }
 
-    /// The ghosts of all lights that are not muted, light by light in the table's order, as rims leave them. Of more than a few lights each
-    /// has outlines of its own, which no two share and a series would have to transform one by one: then ghosts keep their whole outline,
-    /// about the middle of what is left, with the light of that.
+    /// The ghosts of all lights that are not muted, light by light in the table's order, as rims leave them. Each light has outlines of its
+    /// own, which no two share and a series would have to transform one by one. So of many those that outshine the others have them, if
+    /// these are few; all others keep their whole outline, about the middle of what is left, with the light of that.
     pub fn ghosts_of(&self, lights: &[Light], axis: DVec2) -> Vec<Ghost> {
         let shining: Vec<&Light> = lights.iter().filter(|light| !light.muted).collect();
-        if shining.len() <= MOST_CUT {
-            let of = |light: &Light| -> Vec<Ghost> {
-                let table = self.ghosts_at(light.position - axis);
-                table.iter().map(|ghost| ghost.of(light, axis)).collect()
-            };
-            return shining.into_iter().flat_map(of).collect();
-        }
-        shining.par_iter().flat_map_iter(|light| self.dimmed(light, axis)).collect()
+        let least = outshining(shining.iter().map(|light| brightness(light)).collect());
+        let of = |light: &&Light| -> Vec<Ghost> {
+            if brightness(light) < least {
+                return self.dimmed(light, axis);
+            }
+            self.ghosts_at(light.position - axis).iter().map(|ghost| ghost.of(light, axis)).collect()
+        };
+        shining.par_iter().flat_map_iter(of).collect()
     }
 
     /// The ghosts of a light, whole, each about the middle of what rims leave and with the light of that.
-    fn dimmed<'a>(&'a self, light: &'a Light, axis: DVec2) -> impl Iterator<Item = Ghost> + 'a {
+    fn dimmed(&self, light: &Light, axis: DVec2) -> Vec<Ghost> {
         let (tangent, towards) = self.direction(light.position - axis);
         let of = move |(row, path): (&LensGhost, &usize)| {
             let path = &self.made.ghosts.ghosts[*path];
@@ -229,12 +231,17 @@ impl Optical {
             let center = ghost.center + path.shift(tangent) / self.millimetres * towards;
             Ghost { center, radiance: ghost.radiance.map(|radiance| left * radiance), ..ghost }
         };
-        self.lens.ghosts.iter().zip(&*self.paths).map(of)
+        self.lens.ghosts.iter().zip(&*self.paths).map(of).collect()
     }
 
     /// The tangent of the angle of light from a place, and the direction of that from the axis.
     fn direction(&self, place: DVec2) -> (f64, DVec2) {
         (place.length() * self.millimetres / self.made.ghosts.image_per_tangent, place.normalize_or_zero())
+    }
+
+    /// How far from the axis light lies whose angle has this tangent, in the unit of the picture that it was fitted to.
+    pub fn place(&self, tangent: f64) -> f64 {
+        tangent * self.made.ghosts.image_per_tangent / self.millimetres
     }
 
     /// The f-number that it is set to.
@@ -261,6 +268,20 @@ impl Optical {
     pub fn ghosts(&self) -> &LensGhosts {
         &self.made.ghosts
     }
+}
+
+fn brightness(light: &Light) -> f64 {
+    light.flux.iter().sum()
+}
+
+/// From which brightness on lights have outlines of their own, of the brightnesses of all.
+fn outshining(mut all: Vec<f64>) -> f64 {
+    all.sort_by(|a, b| b.total_cmp(a));
+    if all.len() <= MOST_CUT {
+        return f64::NEG_INFINITY;
+    }
+    let outshines = |count: &usize| all[count - 1] > OUTSHINE * all[*count];
+    (1..=MOST_CUT).rev().find(outshines).map_or(f64::INFINITY, |count| all[count - 1])
 }
 
 /// What dust, barrel and rough glass scatter in a lens of a time, which its coating tells: a choice, in the range of ISO 9358's

@@ -214,3 +214,24 @@ fn what_cannot_be_is_refused_by_name() {
         assert!(said.contains(word), "{}: {said}", path.display());
     }
 }
+
+/// A candle beside four lamps changes nothing of what these look like; a fifth lamp as bright is one of many.
+#[test]
+fn lights_that_outshine_others_keep_their_outlines() {
+    let optical = Optical::new(lens("double-gauss")).unwrap();
+    let light = |k: u32, flux: f64| Light {
+        position: 0.7 * DVec2::from_angle(f64::from(k)),
+        flux: [flux; 3],
+        size: 0.0,
+        muted: false,
+    };
+    let lamps: Vec<Light> = (0..4).map(|k| light(k, 5.0 + f64::from(k))).collect();
+    let beside = |fifth: Light| {
+        let mut all = vec![fifth];
+        all.extend_from_slice(&lamps);
+        optical.ghosts_of(&all, DVec2::ZERO)
+    };
+    let (alone, rows) = (optical.ghosts_of(&lamps, DVec2::ZERO), optical.lens().ghosts.len());
+    assert_eq!(beside(light(9, 0.1))[rows..], alone);
+    assert_ne!(beside(light(9, 5.0))[rows..], alone);
+}
