@@ -61,6 +61,15 @@ impl Samples {
         self.0.iter().map(|milliseconds| milliseconds * factor).collect()
     }
 
+    /// What both take together, round by round.
+    ///
+    /// # Panics
+    /// Where the two do not come from the same rounds.
+    pub fn plus(&self, other: &Self) -> Self {
+        assert_eq!(self.0.len(), other.0.len(), "samples of the same rounds");
+        self.0.iter().zip(&other.0).map(|(a, b)| a + b).collect()
+    }
+
     /// How many times as long as `other` this takes.
     ///
     /// # Panics

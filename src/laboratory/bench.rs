@@ -6,6 +6,7 @@ mod digits;
 mod exchange;
 mod first;
 mod gaussians;
+mod lens;
 mod local;
 mod many;
 mod random;
@@ -90,8 +91,12 @@ pub struct Args {
     #[arg(long, conflicts_with_all = ["gaussians", "scenes", "local", "digits", "veil"])]
     whole: bool,
 
+    /// Measure nothing but ghosts of a real lens, and of many lights through many Gaussians
+    #[arg(long, conflicts_with_all = ["gaussians", "scenes", "local", "digits", "veil", "whole"])]
+    lens: bool,
+
     /// Measure nothing but frames of the window, without a window: a slider and a light that are dragged
-    #[arg(long, conflicts_with_all = ["gaussians", "scenes", "local", "digits", "veil", "whole", "rounds", "quick"])]
+    #[arg(long, conflicts_with_all = ["gaussians", "scenes", "local", "digits", "veil", "whole", "lens", "rounds", "quick"])]
     viewer: bool,
 
     /// Write the rows of all tables to this file too
@@ -127,6 +132,7 @@ Examples:
   vglare bench --digits --strict            What do the digits beyond 32-bit floats cost?
   vglare bench --veil                       What does a veil cost?
   vglare bench --whole                      What do the ghosts of all pixels cost?
+  vglare bench --lens                       And those of a real lens?
   vglare bench --viewer --strict            Are drags in the window fluent here?";
 
 fn part(text: &str) -> Result<f64, String> {
@@ -212,6 +218,10 @@ fn measure(args: &Args, window: Window) -> Result<Report> {
         whole::against_a_copy(&stage, &mut report)?;
         return Ok(report);
     }
+    if args.lens {
+        lens::against_a_copy(&stage, &mut report)?;
+        return Ok(report);
+    }
     if args.viewer {
         window(stage.shared_device(), size, &mut report)?;
         return Ok(report);
@@ -224,6 +234,7 @@ fn measure(args: &Args, window: Window) -> Result<Report> {
     whole::against_a_copy(&stage, &mut report)?;
     many::ghosts(&stage, &mut report, args.quick)?;
     if !args.quick {
+        lens::against_a_copy(&stage, &mut report)?;
         cases::rows_and_series(&stage, &mut report)?;
     }
     cases::passes(&stage, &mut report, args.quick)?;

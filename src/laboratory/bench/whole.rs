@@ -60,7 +60,7 @@ pub(super) fn against_a_copy(stage: &Stage, report: &mut Report) -> Result<()> {
 }
 
 /// Gaussians from 0.06 on, the same every time.
-fn lens(ghosts: u64) -> Vec<LensGhost> {
+pub(super) fn lens(ghosts: u64) -> Vec<LensGhost> {
     let mut chance = Chance::new(ghosts);
     let mut ghost = |_| LensGhost {
         bell: Bell::Gaussian,
