@@ -127,6 +127,17 @@ pub enum Error {
         measured: f64,
     },
 
+    /// The glare is not certain to be as exact at each pixel as was asked.
+    #[error(
+        "the glare may be off by {predicted:.1e} of photo and glare at the darkest pixel, and {asked:.1e} was asked"
+    )]
+    EachPixelMissed {
+        /// What was asked, relative to photo and glare.
+        asked: f64,
+        /// The bound, in the same measure.
+        predicted: f64,
+    },
+
     /// The veil is further from the truth than was asked.
     #[error("the veil is off by {measured:.1e} of its own brightness at a pixel, and {asked:.1e} was asked")]
     VeilMissed {
@@ -277,6 +288,7 @@ impl Error {
             Self::ToleranceBelowFloor { .. }
             | Self::BudgetTooSmall { .. }
             | Self::ToleranceMissed { .. }
+            | Self::EachPixelMissed { .. }
             | Self::VeilMissed { .. }
             | Self::FramesMissed { .. }
             | Self::Missed { .. } => 3,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::{Planning, Stages, Veiled};
+use super::{EachPixel, Planning, Stages, Veiled};
 use crate::Result;
 use crate::certificate::Certificate;
 use crate::frame::Frame;
@@ -46,6 +46,8 @@ pub struct Computed {
     pub planning: Planning,
     /// How exactly.
     pub certificate: Certificate,
+    /// And over photo and glare at each pixel, where that is asked for, and there is a picture.
+    pub each_pixel: Option<EachPixel>,
     /// How long each pass took, where that is wanted.
     pub passes: Vec<PassTime>,
     /// Milliseconds that spectrum, field and composite took, without upload and readback; where passes were timed.
@@ -56,9 +58,13 @@ impl Done<'_> {
     /// An error where the glare, or the veil, is further from the truth than was asked.
     ///
     /// # Errors
-    /// [`Error::ToleranceMissed`](crate::Error::ToleranceMissed), [`Error::VeilMissed`](crate::Error::VeilMissed).
+    /// [`Error::ToleranceMissed`](crate::Error::ToleranceMissed), [`Error::EachPixelMissed`](crate::Error::EachPixelMissed),
+    /// [`Error::VeilMissed`](crate::Error::VeilMissed).
     pub fn check(&self) -> Result<()> {
-        self.computed.as_ref().map_or(Ok(()), |computed| computed.certificate.check())?;
+        if let Some(Computed { certificate, each_pixel, .. }) = &self.computed {
+            certificate.check()?;
+            each_pixel.as_ref().map_or(Ok(()), EachPixel::check)?;
+        }
         self.veiled.as_ref().map_or(Ok(()), |veiled| veiled.error.check())
     }
 

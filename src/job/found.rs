@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use super::planned::stays_finite;
-use super::{Computer, Done, Planned, Stages, Step, Wanted, Watch, bright_light, panorama, plan, settings, veil};
+use super::{
+    Computer, Darkest, Done, Planned, Stages, Step, Wanted, Watch, bright_light, panorama, plan, settings, veil,
+};
 use crate::frame::Frame;
 use crate::look::{Gathered, Look, Search};
 use crate::photo::{self, BadPixels, Facts, Photo};
@@ -119,8 +121,12 @@ impl<'a> Found<'a> {
     pub fn plan(mut self, computer: &mut Computer, watch: &impl Watch) -> Result<Planned<'a>> {
         watch.begin(Step::Planning)?;
         let problem = self.scene.problem(self.frame);
-        let (accuracy, known) = (&self.look.accuracy, computer.known.clone());
-        let planning = self.stages.time("plan", || plan(accuracy, &problem, Some(&computer.info), known))?;
+        let known = computer.known.clone();
+        let (look, photo) = (self.look, &self.photo);
+        let planning = self.stages.time("plan", || {
+            let darkest = Darkest::new(look, photo, &problem)?;
+            plan(&look.accuracy, darkest.as_ref(), &problem, Some(&computer.info), known)
+        })?;
         computer.known.warning = None;
         self.warnings.extend(planning.warnings.iter().cloned());
         self.settings.check(planning.plan.scale)?;

@@ -24,6 +24,7 @@
 
 mod computer;
 mod done;
+mod each_pixel;
 mod excess;
 mod found;
 mod panorama;
@@ -40,6 +41,7 @@ use crate::certificate::Verify;
 pub use crate::calibration::Known;
 pub use computer::Computer;
 pub use done::{Computed, Done};
+pub use each_pixel::{Darkest, EachPixel};
 pub use found::Found;
 pub use planned::Planned;
 #[cfg(feature = "laboratory")]

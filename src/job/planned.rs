@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
-use super::{Computed, Computer, Done, Found, Planning, Stages, Step, Wanted, Watch, veil};
+use super::{Computed, Computer, Done, EachPixel, Found, Planning, Stages, Step, Wanted, Watch, veil};
 use crate::certificate::{Certificate, Verify};
 use crate::gpu::{Info, PassTime};
+use crate::look::Look;
 use crate::photo::{self, Photo};
 use crate::plan::Plan;
 use crate::renderer::{Pending, Picture, Settings};
+use crate::scene::Goal;
 use crate::{Error, Result};
 
 /// A photo for which there is a plan.
@@ -68,10 +70,23 @@ impl<'a> Planned<'a> {
             None => None,
         };
         stays_finite(picture.as_ref(), before, glare.as_ref(), cast.as_ref(), certificate.not_finite)?;
-        let computed = Some(Computed { info, planning, certificate, passes, measured_ms });
+        let each_pixel = picture.as_ref().and_then(|picture| each_pixel(look, picture, &planning.plan, &certificate));
+        warnings.extend(each_pixel.as_ref().and_then(|each_pixel| Some(each_pixel.check().err()?.to_string())));
+        let computed = Some(Computed { info, planning, certificate, each_pixel, passes, measured_ms });
         let veiled = cast.map(|cast| cast.veiled);
         warnings.extend(veiled.as_ref().and_then(|veiled| Some(veiled.error.check().err()?.to_string())));
         Ok(Done { look, frame, facts, bad, scene, picture, glare, computed, veiled, stages, warnings })
+    }
+}
+
+/// How exact the glare is at each pixel, where the look asks for it.
+fn each_pixel(look: &Look, picture: &Photo, plan: &Plan, certificate: &Certificate) -> Option<EachPixel> {
+    let Certificate { predicted, measured, .. } = *certificate;
+    match look.accuracy.goal {
+        Goal::Tolerance(asked) if look.accuracy.each_pixel => {
+            Some(EachPixel::of(picture, plan, look.strength, asked, [predicted, measured]))
+        }
+        _ => None,
     }
 }
 

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use super::each_pixel::Darkest;
 use crate::Result;
 use crate::calibration::Known;
 use crate::gpu::Info;
@@ -38,12 +39,34 @@ pub(crate) fn request(device: Option<&Info>, tolerance: f64, cost_model: CostMod
     })
 }
 
-/// The plan for a problem on a device, or, without one, on a device without limits; by what is known of its speed.
+/// The plan for a problem on a device, or, without one, on a device without limits; by what is known of its speed. Where it matters how
+/// dark the picture is, the tolerance is of that as well.
 ///
 /// # Errors
 /// Those of [`plan::plan`], [`plan::plan_at_least`] and [`plan::plan_within`].
-pub fn plan(accuracy: &Accuracy, problem: &Arc<Problem>, device: Option<&Info>, known: Known) -> Result<Planning> {
-    let &Accuracy { goal, allow_floor, degree, period, evaluator } = accuracy;
+pub fn plan(
+    accuracy: &Accuracy,
+    darkest: Option<&Darkest>,
+    problem: &Arc<Problem>,
+    device: Option<&Info>,
+    known: Known,
+) -> Result<Planning> {
+    let planned = plan_to(accuracy, problem, device, known.clone())?;
+    let (Some(darkest), Goal::Tolerance(asked)) = (darkest, accuracy.goal) else { return Ok(planned) };
+    let needed = darkest.tolerance(asked, planned.plan.scale);
+    if needed >= planned.plan.tolerance {
+        return Ok(planned);
+    }
+    let mut planned = plan_to(&Accuracy { goal: Goal::Tolerance(needed), ..*accuracy }, problem, device, known)?;
+    planned.notes.insert(
+        0,
+        format!("held to {needed:.1e} of the largest glare, for {asked:.1e} of photo and glare at the darkest pixel"),
+    );
+    Ok(planned)
+}
+
+fn plan_to(accuracy: &Accuracy, problem: &Arc<Problem>, device: Option<&Info>, known: Known) -> Result<Planning> {
+    let &Accuracy { goal, allow_floor, each_pixel: _, degree, period, evaluator } = accuracy;
     // A budget is bought from the loosest tolerance on, whatever the request says.
     let asked = match goal {
         Goal::Tolerance(tolerance) => tolerance,

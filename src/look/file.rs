@@ -42,7 +42,7 @@ impl Look {
             None => LookLens::Own(scene.lens_ghosts.into()),
         };
         let LookSection { strength, size, tint, mix, normalize, unit, fov, sources: _, recover } = scene.look;
-        let AccuracySection { goal, allow_floor, evaluator } = scene.accuracy;
+        let AccuracySection { goal, allow_floor, each_pixel, evaluator } = scene.accuracy;
         let of_veil = scene.veil.as_ref().and_then(|veil| veil.fov);
         if let (Some(one), Some(other)) = (fov, of_veil)
             && one != other
@@ -81,6 +81,7 @@ impl Look {
             accuracy: Accuracy {
                 goal: goal.unwrap_or_default(),
                 allow_floor,
+                each_pixel,
                 degree: scene.degree,
                 period: scene.period,
                 evaluator,
@@ -118,7 +119,7 @@ impl Look {
         };
         let add = matches!(lights, LookLights::FoundAnd(_));
         let sources = if matches!(lights, LookLights::Photo(_)) { Sources::Photo } else { Sources::Lights };
-        let Accuracy { goal, allow_floor, degree, period, evaluator } = *accuracy;
+        let Accuracy { goal, allow_floor, each_pixel, degree, period, evaluator } = *accuracy;
         let FindOptions { by, threshold, merge, shape, max_lights, beyond, firefly_limit, knee, recover } = *find;
         SceneFile {
             version: Version::Two,
@@ -151,7 +152,7 @@ impl Look {
                 knee: Some(knee),
                 add,
             },
-            accuracy: AccuracySection { goal: Some(goal), allow_floor, evaluator },
+            accuracy: AccuracySection { goal: Some(goal), allow_floor, each_pixel, evaluator },
             veil: veil.as_ref().map(|veil| VeilSection { fov: *fov, ..veil.section() }),
             no_veil: veil.is_none(),
             lights: listed,
@@ -210,8 +211,9 @@ mod tests {
             mix: Mix::Energy,
             normalize: Normalize::None,
             accuracy: Accuracy {
-                goal: Goal::Budget(12.5),
+                goal: Goal::Tolerance(1.0 / 800.0),
                 allow_floor: true,
+                each_pixel: true,
                 degree: Some([0, 12]),
                 period: Some(DVec2::new(4.0, 3.0)),
                 evaluator: Some(Evaluator::Grid),

@@ -93,6 +93,8 @@ pub struct Accuracy {
     pub goal: Goal,
     /// Whether to be as exact as 32-bit floats can, where they cannot be as exact as asked.
     pub allow_floor: bool,
+    /// Whether the error at each pixel is to be within the tolerance of photo and glare there, too.
+    pub each_pixel: bool,
     /// Highest harmonic in x and y, 0 to 4096.
     pub degree: Option<[u32; 2]>,
     /// Period of the series in x and y, > 0, in the unit of lengths.

@@ -29,6 +29,11 @@ pub struct AccuracyArgs {
     #[arg(long)]
     allow_floor: bool,
 
+    /// Hold the error at each pixel to the tolerance of photo and glare there, too, so that one bright ghost excuses no
+    /// other; what is darker than 1/4096 of the picture's mean is held to as much as that
+    #[arg(long, conflicts_with = "budget")]
+    each_pixel: bool,
+
     /// Highest harmonic in x and y, 0 to 4096 [default: planned]
     #[arg(long, value_name = "N,M", allow_hyphen_values = true, value_parser = degree)]
     degree: Option<Degree>,
@@ -79,6 +84,8 @@ impl AccuracyArgs {
         Accuracy {
             goal: self.budget.map(Goal::Budget).or(tolerance).unwrap_or(set.goal),
             allow_floor: self.allow_floor || set.allow_floor,
+            // A budget takes the tolerance's place.
+            each_pixel: self.each_pixel || set.each_pixel && self.budget.is_none(),
             degree: self.degree.map(|degree| degree.0).or(set.degree),
             period: self.period.or(set.period),
             evaluator: self.evaluator.or(set.evaluator),

@@ -101,7 +101,7 @@ fn options(look: &Look) -> Result<Vec<String>> {
     options.changed("--tint", *tint, default.tint, |[r, g, b]| format!("{r},{g},{b}"));
     options.changed("--mix", *mix, default.mix, name);
     options.changed("--normalize", *normalize, default.normalize, name);
-    let Accuracy { goal, allow_floor, degree, period, evaluator } = *accuracy;
+    let Accuracy { goal, allow_floor, each_pixel, degree, period, evaluator } = *accuracy;
     match goal {
         Goal::Tolerance(_) if goal == default.accuracy.goal => {}
         Goal::Tolerance(tolerance) => options.add("--tolerance", tolerance),
@@ -109,6 +109,9 @@ fn options(look: &Look) -> Result<Vec<String>> {
     }
     if allow_floor {
         options.0.push("--allow-floor".into());
+    }
+    if each_pixel {
+        options.0.push("--each-pixel".into());
     }
     options.given("--degree", degree, |[n, m]| format!("{n},{m}"));
     options.given("--period", period, pair);

@@ -39,6 +39,7 @@
 //! [accuracy]
 //! tolerance = 1e-3            # between 0 and 1; or budget = 20.0, in milliseconds
 //! allow_floor = false
+//! each_pixel = false          # true holds the error to the tolerance of photo and glare at each pixel, too
 //! evaluator = "grid"          # or "direct", "series", "rows"; planned otherwise
 //!
 //! [[light]]

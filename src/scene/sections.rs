@@ -102,6 +102,8 @@ pub struct AccuracySection {
     pub goal: Option<Goal>,
     /// Whether to take the lowest tolerance that can be had, where what is asked cannot.
     pub allow_floor: bool,
+    /// Whether the error at each pixel is to be within the tolerance of photo and glare there, too; not with a budget.
+    pub each_pixel: bool,
     /// How the field is computed.
     pub evaluator: Option<Evaluator>,
 }
@@ -139,23 +141,29 @@ pub(super) struct AccuracyTable {
     budget: Option<Spanned<Number<IsPositive>>>,
     #[serde(default)]
     allow_floor: bool,
+    #[serde(default)]
+    each_pixel: bool,
     evaluator: Option<Evaluator>,
 }
 
 impl AccuracyTable {
     /// What it says, unless it says two things at once.
     pub fn section(self) -> Result<AccuracySection, Fault> {
-        let Self { tolerance, budget, allow_floor, evaluator } = self;
+        let Self { tolerance, budget, allow_floor, each_pixel, evaluator } = self;
         let goal = match (tolerance, budget) {
             (Some(_), Some(budget)) => {
                 let message = "expected either `tolerance` or `budget`, found both".to_owned();
+                return Err(Fault { span: budget.span(), message });
+            }
+            (None, Some(budget)) if each_pixel => {
+                let message = "`each_pixel` is of a `tolerance`, and this is a `budget`".to_owned();
                 return Err(Fault { span: budget.span(), message });
             }
             (Some(tolerance), None) => Some(Goal::Tolerance(tolerance.0)),
             (None, Some(budget)) => Some(Goal::Budget(budget.into_inner().0)),
             (None, None) => None,
         };
-        Ok(AccuracySection { goal, allow_floor, evaluator })
+        Ok(AccuracySection { goal, allow_floor, each_pixel, evaluator })
     }
 }
 

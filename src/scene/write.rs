@@ -7,7 +7,7 @@ use glam::DVec2;
 use serde::Serialize;
 
 use super::file::parse_scene;
-use super::sections::{FindSection, Goal, LookSection};
+use super::sections::{AccuracySection, FindSection, Goal, LookSection};
 use super::veil::NO_VEIL;
 use super::{Ghost, LensGhost, Light, OpticsSection, SceneFile, VeilSection};
 use crate::choices::Evaluator;
@@ -111,6 +111,8 @@ struct AccuracyOut {
     budget: Option<f64>,
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     allow_floor: bool,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    each_pixel: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     evaluator: Option<Evaluator>,
 }
@@ -124,7 +126,8 @@ impl AccuracyOut {
             Some(Goal::Budget(budget)) => (None, Some(budget)),
             None => (None, None),
         };
-        let out = Self { tolerance, budget, allow_floor: section.allow_floor, evaluator: section.evaluator };
+        let AccuracySection { allow_floor, each_pixel, evaluator, .. } = section;
+        let out = Self { tolerance, budget, allow_floor, each_pixel, evaluator };
         (out != Self::default()).then_some(out)
     }
 }

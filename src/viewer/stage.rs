@@ -16,7 +16,7 @@ use super::viewing::Shows;
 use crate::choices::LightBy;
 use crate::frame::Frame;
 use crate::gpu::{Device, Screen};
-use crate::job::{self, Known};
+use crate::job::{self, Darkest, Known};
 use crate::look::Gathered;
 use crate::plan::Plan;
 use crate::raster::Raster;
@@ -211,7 +211,8 @@ impl Stage {
         if work >= Work::Plan {
             // Pixels are not looked at one by one while they move.
             let frame = if preview && settings.is_affine() { halved(document.frame) } else { document.frame };
-            self.update_field(frame, look)?;
+            let darkest = Darkest::new(look, &document.photo, &scene.problem(document.frame))?;
+            self.update_field(frame, look, darkest)?;
         }
         self.made.look = Some(look.clone());
         if document.viewing.without_constant {
@@ -250,12 +251,13 @@ impl Stage {
     }
 
     /// Plans as `vglare apply` does, and computes the spectrum.
-    fn update_field(&mut self, frame: Frame, look: &Look) -> Result<()> {
+    fn update_field(&mut self, frame: Frame, look: &Look, darkest: Option<Darkest>) -> Result<()> {
         let Some(scene) = &self.made.scene else { return Ok(()) };
         let started = Instant::now();
         let device = self.live.picture.field.device().info();
         let problem = scene.problem(frame);
-        let planned = job::plan(&look.accuracy, &problem, Some(device), self.known.clone())?;
+        let known = self.known.clone();
+        let planned = job::plan(&look.accuracy, darkest.as_ref(), &problem, Some(device), known)?;
         self.times.plan = started.elapsed().as_secs_f64() * 1e3;
         let started = Instant::now();
         self.live.picture.field.set_scene(&planned.plan)?;

@@ -3,6 +3,7 @@
 mod animate;
 mod bad_input;
 mod calibrate;
+mod each_pixel;
 mod extremes;
 mod harmonics;
 mod interrupted;

@@ -241,6 +241,7 @@ mod tests {
             accuracy: Accuracy {
                 goal: Goal::Tolerance(1.0 / 7000.0),
                 allow_floor: true,
+                each_pixel: true,
                 degree: Some([0, 12]),
                 period: Some(DVec2::new(4.1, 3.0)),
                 evaluator: Some(Evaluator::Rows),
@@ -376,6 +377,7 @@ mod tests {
             veil: None,
             accuracy: Accuracy {
                 allow_floor: true,
+                each_pixel: true,
                 degree: Some([1, 1]),
                 period: Some(DVec2::splat(3.0)),
                 evaluator: Some(Evaluator::Grid),

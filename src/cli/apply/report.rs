@@ -9,7 +9,7 @@ use crate::choices::{LengthUnit, LightBy, Mix, Normalize, Sources};
 use crate::cli::lights::FirefliesJson;
 use crate::cli::plan::CostModelReport;
 use crate::gpu::{Info, PassTime};
-use crate::job::{Computed, Done, Veiled};
+use crate::job::{Computed, Done, EachPixel, Veiled};
 use crate::look::{Gathered, Look, LookLens};
 use crate::photo::{BadKind, Facts};
 use crate::plan::Plan;
@@ -36,6 +36,7 @@ pub struct Report<'a> {
     notes: &'a [String],
     warnings: &'a [String],
     error: Option<&'a Certificate>,
+    each_pixel: Option<&'a EachPixel>,
     passes: &'a [PassTime],
     milliseconds: Vec<Stage>,
     renderer: Option<&'a Info>,
@@ -172,6 +173,7 @@ impl<'a> Report<'a> {
             notes: computed.map_or(&[], |computed| &computed.planning.notes),
             warnings: &work.warnings,
             error: computed.map(|computed| &computed.certificate),
+            each_pixel: computed.and_then(|computed| computed.each_pixel.as_ref()),
             passes: computed.map_or(&[], |computed| &computed.passes),
             milliseconds: work.stages.0.iter().map(|&(stage, wall_ms)| Stage { stage, wall_ms }).collect(),
             renderer: computed.map(|computed| &*computed.info),

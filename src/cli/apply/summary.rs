@@ -9,7 +9,7 @@ use crate::certificate::Verify;
 use crate::choices::{Border, LengthUnit, Processor};
 use crate::cli::found;
 use crate::cli::plan::text;
-use crate::job::{Computed, Done, VeilSeen, Veiled};
+use crate::job::{Computed, Done, EachPixel, VeilSeen, Veiled};
 use crate::look::{Gathered, Look, LookLens, LookLights};
 use crate::photo::Facts;
 use crate::scene::Found;
@@ -193,7 +193,7 @@ fn said(choice: &impl std::fmt::Debug) -> String {
 }
 
 fn about_plan(out: &mut dyn Write, job: &Job<'_, Done<'_>>, computed: &Computed) -> io::Result<()> {
-    let Computed { info, planning, certificate: error, measured_ms, passes: _ } = computed;
+    let Computed { info, planning, certificate: error, each_pixel, measured_ms, passes: _ } = computed;
     let plan = &planning.plan;
     text::plan(out, plan)?;
     if let Some(budget) = job.work.look.accuracy.goal.budget() {
@@ -207,6 +207,14 @@ fn about_plan(out: &mut dyn Write, job: &Job<'_, Done<'_>>, computed: &Computed)
         "error    {:.1e} measured at {all}{} pixels, {:.1e} predicted, {:.1e} asked",
         error.measured, error.pixels, error.predicted, error.asked
     )?;
+    if let Some(EachPixel { asked, predicted, measured, darker, .. }) = each_pixel {
+        write!(out, "         of photo and glare at the darkest pixel: at most {measured:.1e} measured, ")?;
+        write!(out, "{predicted:.1e} predicted, {asked:.1e} asked")?;
+        match darker.iter().max() {
+            Some(&darker) if darker > 0 => writeln!(out, "; {darker} pixels below 1/4096 of the mean count as that")?,
+            _ => writeln!(out)?,
+        }
+    }
     writeln!(out, "renderer {}, {}", info.renderer, info.route)
 }
 

@@ -92,7 +92,10 @@ pub fn run(args: &Args) -> Result<()> {
     let frame = args.size.map_or(whole, |[width, height]| whole.resized(width, height));
     let device = Device::open(args.accuracy.backend.backends()).ok();
     let info = device.as_ref().map(|device| device.info());
-    let planned = job::plan(&look.accuracy, &scene.problem(frame), info, args.accuracy.known(info))?;
+    let problem = scene.problem(frame);
+    // However large it is planned, the picture is as dark.
+    let darkest = job::Darkest::new(&look, &photo, &scene.problem(whole))?;
+    let planned = job::plan(&look.accuracy, darkest.as_ref(), &problem, info, args.accuracy.known(info))?;
     warn(&planned.warnings);
     let veil = job::plan_veil(&look, &photo, &frame)?;
     let budget = look.accuracy.goal.budget();

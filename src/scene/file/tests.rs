@@ -433,7 +433,7 @@ fn a_look_is_read_key_by_key() {
     };
     assert_eq!(scene.find, find);
     let (goal, evaluator) = (Some(Goal::Budget(20.0)), Some(Evaluator::Rows));
-    assert_eq!(scene.accuracy, AccuracySection { goal, allow_floor: true, evaluator });
+    assert_eq!(scene.accuracy, AccuracySection { goal, allow_floor: true, each_pixel: false, evaluator });
 }
 
 #[test]

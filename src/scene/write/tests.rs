@@ -130,6 +130,7 @@ fn scene(chance: &mut Chance) -> SceneFile {
         accuracy: AccuracySection {
             goal: one_of(chance, &goals),
             allow_floor: one_of(chance, &[true, false]),
+            each_pixel: false,
             evaluator: maybe(chance, |chance| one_of(chance, &Evaluator::ALL)),
         },
         no_veil: veil.is_none() && one_of(chance, &[true, false]),

@@ -48,7 +48,8 @@ pub fn work(old: &Look, new: &Look) -> Work {
     if old.lens_ghosts() != new.lens_ghosts() || !makes || old.ghosts != *ghosts {
         return Work::Ghosts;
     }
-    if old.accuracy != *accuracy {
+    // What the picture is at its darkest depends on the strength.
+    if old.accuracy != *accuracy || accuracy.each_pixel && old.strength != *strength {
         return Work::Plan;
     }
     if (old.strength, &old.veil, old.fov, old.mix, old.normalize) == (*strength, veil, *fov, *mix, *normalize) {
