@@ -68,20 +68,23 @@ impl Gathering {
         let of = |k: usize| &ghosts[group.members[k] as usize];
         let count = group.members.len();
         let shares: Vec<f64> = (0..count).flat_map(|k| sizes.weights(of(k).size)).collect();
-        let one = |(size, each): (DVec2, usize)| {
-            let point = |k: usize| {
-                let turns = of(k).center / period;
-                let share = shares[k * self.sizes as usize + each];
-                let weight = weigh::weight(of(k), scale).map(|weight| share * weight);
-                Point { turns: (turns - turns.floor()).to_array(), weight }
-            };
-            let sums = match &self.by {
-                Gatherer::Cells(cells) => cells.sums(count, point, group.degree),
-                Gatherer::Grid(grid) => grid.sums(count, point, group.degree),
-            };
-            (size, sums)
+        let turns = |k: usize| {
+            let turns = of(k).center / period;
+            (turns - turns.floor()).to_array()
         };
-        sizes.sizes().zip(0..).map(one).collect()
+        let weight = |k: usize, each: usize| {
+            let share = shares[k * self.sizes as usize + each];
+            weigh::weight(of(k), scale).map(|weight| share * weight)
+        };
+        let sums = match &self.by {
+            Gatherer::Grid(grid) => grid.sums([count, self.sizes as usize], turns, weight, group.degree),
+            Gatherer::Cells(cells) => {
+                let point = |k: usize, each: usize| Point { turns: turns(k), weight: weight(k, each) };
+                let one = |each: usize| cells.sums(count, |k| point(k, each), group.degree);
+                (0..self.sizes as usize).map(one).collect()
+            }
+        };
+        sizes.sizes().zip(sums).collect()
     }
 }
 

@@ -15,7 +15,7 @@ use realfft::RealFftPlanner;
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
-use super::{Point, Sums};
+use super::Sums;
 use crate::fast_length::fast_length;
 use crate::series::special::bspline;
 use crate::series::spline_gains;
@@ -39,13 +39,12 @@ pub struct Grid {
 struct Spread {
     first: [usize; 2],
     weights: [[f64; ORDER]; 2],
-    weight: [f64; 3],
 }
 
-/// Points of neighbouring rows, spread: rows from the first on, each of one plane for each colour, and wider than a turn.
+/// Points of neighbouring rows, spread: rows from the first on, each wider than a turn, of one plane for each set and colour.
 struct Band {
     first: usize,
-    planes: [Vec<f64>; 3],
+    planes: Vec<Vec<f64>>,
 }
 
 impl Grid {
@@ -75,14 +74,25 @@ impl Grid {
         [(ORDER * ORDER) as f64, 3.0 * nodes * nodes.log2()]
     }
 
-    /// The sums of modes n = 0 ..= N and m = 0 ..= M over `count` points, n running fastest. The same for any number of
-    /// threads.
+    /// The sums of modes n = 0 ..= N and m = 0 ..= M over `count` points, n running fastest; for each of `sets` of weights, of which
+    /// `turns` gives each place, 0 to 1, and `weight` those of a point in a set. The same for any number of threads.
     ///
     /// # Panics
     /// For harmonics of which there are more than half of the nodes.
-    pub fn sums(&self, count: usize, point: impl Fn(usize) -> Point + Sync, degree: [u32; 2]) -> Vec<Sums> {
+    pub fn sums(
+        &self,
+        [count, sets]: [usize; 2],
+        turns: impl Fn(usize) -> [f64; 2] + Sync,
+        weight: impl Fn(usize, usize) -> [f64; 3] + Sync,
+        degree: [u32; 2],
+    ) -> Vec<Vec<Sums>> {
         assert!((0..2).all(|axis| 2 * degree[axis] < self.nodes[axis]), "more nodes than waves can be told apart on");
-        let planes = self.spread(count, point);
+        let planes = self.spread([count, sets], turns, weight);
+        planes.chunks_exact(3).map(|planes| self.transformed(planes, degree)).collect()
+    }
+
+    /// The sums of what is spread, of each colour.
+    fn transformed(&self, planes: &[Vec<f64>], degree: [u32; 2]) -> Vec<Sums> {
         let gains = [0, 1].map(|axis| spline_gains(ORDER as u32, degree[axis], f64::from(self.nodes[axis]).recip()));
         let [columns, rows] = degree.map(|degree| degree as usize + 1);
         let mut sums = vec![Sums::default(); columns * rows];
@@ -102,15 +112,23 @@ impl Grid {
         sums
     }
 
-    /// All points, of each colour, row by row of nodes.
-    fn spread(&self, count: usize, point: impl Fn(usize) -> Point + Sync) -> [Vec<f64>; 3] {
+    /// All points, of each set and colour, row by row of nodes.
+    fn spread(
+        &self,
+        [count, sets]: [usize; 2],
+        turns: impl Fn(usize) -> [f64; 2] + Sync,
+        weight: impl Fn(usize, usize) -> [f64; 3] + Sync,
+    ) -> Vec<Vec<f64>> {
         let [columns, rows] = self.nodes.map(|nodes| nodes as usize);
-        let points: Vec<Spread> = (0..count).into_par_iter().map(|k| self.place(&point(k))).collect();
+        let points: Vec<Spread> = (0..count).into_par_iter().map(|k| self.place(turns(k))).collect();
         // Neighbours in a row share what a core has at hand.
         let order = by_rows(&points, rows);
-        let band = |chunk: &[u32]| Band::new(chunk.iter().map(|&index| &points[index as usize]), columns);
+        let band = |chunk: &[u32]| {
+            let points = chunk.iter().map(|&index| (&points[index as usize], index as usize));
+            Band::new(points, columns, sets, &weight)
+        };
         let bands: Vec<Band> = order.par_chunks(CHUNK).filter_map(band).collect();
-        let mut planes = [0; 3].map(|_| vec![0.0; columns * rows]);
+        let mut planes = vec![vec![0.0; columns * rows]; 3 * sets];
         for band in bands {
             for (plane, wide) in planes.iter_mut().zip(&band.planes) {
                 for (at, row) in wide.chunks_exact(columns + ORDER).enumerate() {
@@ -123,15 +141,15 @@ impl Grid {
         planes
     }
 
-    fn place(&self, point: &Point) -> Spread {
+    fn place(&self, turns: [f64; 2]) -> Spread {
         let axis = |axis: usize| {
             let nodes = self.nodes[axis] as usize;
-            let place = point.turns[axis] * nodes as f64;
+            let place = turns[axis] * nodes as f64;
             let below = place.floor();
             ((below as usize + nodes - (ORDER / 2 - 1)) % nodes, bspline::<ORDER>(place - below))
         };
         let [(column, across), (row, down)] = [axis(0), axis(1)];
-        Spread { first: [column, row], weights: [across, down], weight: point.weight }
+        Spread { first: [column, row], weights: [across, down] }
     }
 
     /// For each harmonic of x its waves with all frequencies of y.
@@ -179,16 +197,22 @@ fn by_rows(points: &[Spread], rows: usize) -> Vec<u32> {
 }
 
 impl Band {
-    /// Of points in the order of their rows; none of no points.
-    fn new<'a>(points: impl DoubleEndedIterator<Item = &'a Spread> + Clone, columns: usize) -> Option<Self> {
-        let (first, last) = (points.clone().next()?.first[1], points.clone().next_back()?.first[1]);
+    /// Of points and their numbers, in the order of their rows; none of no points.
+    fn new<'a>(
+        points: impl DoubleEndedIterator<Item = (&'a Spread, usize)> + Clone,
+        columns: usize,
+        sets: usize,
+        weight: impl Fn(usize, usize) -> [f64; 3],
+    ) -> Option<Self> {
+        let (first, last) = (points.clone().next()?.0.first[1], points.clone().next_back()?.0.first[1]);
         let stride = columns + ORDER;
-        let mut planes = [0; 3].map(|_| vec![0.0; stride * (last - first + ORDER)]);
+        let mut planes = vec![vec![0.0; stride * (last - first + ORDER)]; 3 * sets];
         Arch::new().dispatch(
             #[inline(always)]
             || {
-                for Spread { first: [column, row], weights: [across, down], weight } in points {
-                    for (plane, weight) in planes.iter_mut().zip(weight) {
+                for (Spread { first: [column, row], weights: [across, down] }, index) in points {
+                    let weights = (0..sets).flat_map(|set| weight(index, set));
+                    for (plane, weight) in planes.iter_mut().zip(weights) {
                         for (k, down) in down.iter().enumerate() {
                             let to = &mut plane[(row - first + k) * stride + column..][..ORDER];
                             let weight = weight * down;
@@ -206,6 +230,7 @@ impl Band {
 mod tests {
     use std::f64::consts::TAU;
 
+    use super::super::Point;
     use super::*;
     use crate::chance::Chance;
 
@@ -227,8 +252,10 @@ mod tests {
             let bound = grid.error(degree);
             assert!(bound < 2.5 * asked, "{asked}: {bound}");
             // Of one point: what others add hides behind it.
-            let alone = grid.sums(1, |_| points[5], degree);
-            let all = grid.sums(points.len(), |k| points[k], degree);
+            let alone = &grid.sums([1, 1], |_| points[5].turns, |_, _| points[5].weight, degree)[0];
+            // The second of two sets.
+            let weight = |k: usize, set: usize| points[k].weight.map(|weight| if set == 0 { 1.0 } else { weight });
+            let all = &grid.sums([points.len(), 2], |k| points[k].turns, weight, degree)[1];
             let (mut worst, mut worst_of_all) = (0.0f64, 0.0f64);
             for m in 0..=degree[1] {
                 for n in 0..=degree[0] {
