@@ -1,6 +1,6 @@
 // The lattice interpolated along y, at every row of the tile, in 64-bit floats.
 #include "shared/bspline_double.glsl"
-#include "shared/knots.glsl"
+#include "shared/knots_double.glsl"
 
 layout(local_size_x = DOUBLE_GROUP) in;
 layout(std430, binding = BINDING_NODES) readonly buffer Nodes {
@@ -17,7 +17,7 @@ void main() {
     }
     Knot place = knot(knots_y, row);
     double weights[SPLINE_ORDER];
-    spline_weights(double(place.fraction), weights);
+    spline_weights(exact_fraction(place), weights);
     double sum = 0.0lf;
     for (int k = 0; k < SPLINE_ORDER; ++k) {
         sum += weights[k] * nodes[(place.first + k) * stride + column];

@@ -6,6 +6,8 @@
 struct Knot {
     int first;      // of the four nodes
     float fraction; // past the second of them
+    uint bits;      // of that, KNOT_BITS
+    uint fine;      // and 16 more
 };
 
 // Numbers with KNOT_BITS bits after the point, and 16 more of the first two.
@@ -18,5 +20,8 @@ Knot knot(uvec4 axis, int pixel) {
     uint fine = (axis.w >> 16) + uint(pixel) * (axis.w & 0xffffu);
     uint place = axis.x + uint(pixel) * axis.y + (fine >> 16);
     const uint one = 1u << KNOT_BITS;
-    return Knot(int(place >> KNOT_BITS), float(int(place & (one - 1u))) * (1.0 / float(one)));
+    uint bits = place & (one - 1u);
+    fine &= 0xffffu;
+    float fraction = (float(int(bits)) + float(int(fine)) * (1.0 / 65536.0)) * (1.0 / float(one));
+    return Knot(int(place >> KNOT_BITS), fraction, bits, fine);
 }

@@ -81,6 +81,7 @@ const SOURCES: &[(&str, &str)] = &sources![
     "shared/double.glsl",
     "shared/emission.glsl",
     "shared/knots.glsl",
+    "shared/knots_double.glsl",
     "shared/normalized.glsl",
     "shared/overlay.glsl",
     "shared/phase.glsl",

@@ -33,7 +33,10 @@ pub(super) fn values(counts: &[u32], terms: &[[f32; 4]], nodes: &Nodes, order: u
                 // The sine of nothing is nothing.
                 waves[0].im = 0.0;
                 transform.process_with_scratch(waves, sums, scratch).expect("buffers of the planner's lengths");
-                values.iter_mut().zip(sums.iter().cycle()).for_each(|(value, sum)| value[colour] = *sum);
+                values
+                    .iter_mut()
+                    .zip(sums.iter().cycle().skip(across.first % across.nodes))
+                    .for_each(|(value, sum)| value[colour] = *sum);
             },
         );
     }
@@ -68,7 +71,10 @@ fn profiles(counts: &[u32], terms: &[[f32; 4]], colour: usize, down: &Ring, rows
                 }
             }
             transform.process_with_scratch(waves, scratch);
-            profile.iter_mut().zip(waves.iter().cycle()).for_each(|(profile, wave)| *profile = *wave);
+            profile
+                .iter_mut()
+                .zip(waves.iter().cycle().skip(down.first % down.nodes))
+                .for_each(|(profile, wave)| *profile = *wave);
         },
     );
     profiles

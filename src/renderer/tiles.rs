@@ -151,14 +151,20 @@ impl Nodes {
         let step = self.planned[axis];
         let around = self.period[axis] / step;
         debug_assert!((around - around.round()).abs() < 1e-6 * around, "{around} nodes make a period");
-        let turns = self.place(axis, 0.0, step) / self.period[axis];
+        let before = f64::from(order / 2 - 1);
+        let first = self.first[axis] + before;
+        let turns = self.place(axis, -first, step) / self.period[axis];
         let turned = |(n, gain): (usize, f64)| {
             let turns = n as f64 * turns;
             let wave = Complex::from_polar(if n == 0 { gain } else { 0.5 * gain }, TAU * (turns - turns.round()));
             Wave::new(wave.re as f32, wave.im as f32)
         };
         let gains = spline_gains(order, degree, step / self.period[axis]);
-        Ring { nodes: around.round() as usize, turned: gains.into_iter().enumerate().map(turned).collect() }
+        Ring {
+            nodes: around.round() as usize,
+            first: first as usize,
+            turned: gains.into_iter().enumerate().map(turned).collect(),
+        }
     }
 
     /// What a lattice in 32-bit floats takes beside phases.
@@ -187,10 +193,13 @@ impl Nodes {
 /// A wave of a lattice that is transformed.
 pub(super) type Wave = Complex<f32>;
 
-/// The nodes of one period along an axis, and how the harmonics come to the first that a tile needs: what a transform takes.
+/// The nodes of one period along an axis, from the first of the whole window on, and how the harmonics come to that: what a transform
+/// takes, whichever tile asks, so that all of them have the same bits.
 pub(super) struct Ring {
     /// How many there are.
     pub nodes: usize,
+    /// Which of them is the first that the tile needs.
+    pub first: usize,
     /// Of each harmonic its gain times e^{inθ} with the first node's phase θ, and but for the first harmonic one half of that.
     pub turned: Vec<Wave>,
 }

@@ -27,12 +27,12 @@ fn glare_is_what_it_was() {
     let scene = include_str!("../../golden-pictures/mixed.toml");
     place.text("mixed.toml", scene);
     // What the plan computes of a spectrum has the rounding of f64, and had that of f32; and a direct sum adds up each kind of
-    // bell by itself, and did so ghost by ghost.
+    // bell by itself, and did so ghost by ghost. The nodes of a lattice lay elsewhere: that moves glare by what interpolation may cost.
     for (name, options, allowed) in [
         (
             "lens-grid.exr",
             &["--sources", "lights", "--preset", "v1/classic-prime", "--by", "luminance", "--evaluator", "grid"][..],
-            1e-6,
+            7.5e-4,
         ),
         ("mixed-rows.exr", &["--scene", "mixed.toml", "--evaluator", "rows", "--tolerance", "1e-1"], 1e-6),
         ("mixed-direct.exr", &["--scene", "mixed.toml", "--evaluator", "direct"], 2e-7),
