@@ -3,6 +3,7 @@
 mod animate;
 mod bad_input;
 mod calibrate;
+mod environment;
 mod extremes;
 mod harmonics;
 mod interrupted;
