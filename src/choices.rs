@@ -189,6 +189,8 @@ pub enum Projection {
     Rectilinear,
     /// r = F ψ: an equidistant fisheye
     Fisheye,
+    /// Of all directions, twice as wide as high: columns are azimuths, rows heights
+    Equirectangular,
     /// A plane: angles are distances, which is right in the middle of a rectilinear picture only
     Planar,
 }

@@ -25,6 +25,7 @@
 //! | [`compare`], [`certificate`] | the one error metric, and a rendered field held against the definition |
 //! | [`job`] | a look laid over a photo: find, plan, render, certify |
 //! | [`motion`] | lights and cameras that move: where they are at a time, and what is seen then |
+//! | [`environment`] | light from outside the frame: what a lens scatters of all that its camera does not see |
 //! | [`measure`] | arms timed in turns, and their ratios |
 //!
 //! Beside them stand [`panics`], which makes errors of them, `limits`, which asks the system for room and threads before
@@ -53,6 +54,7 @@ pub mod choices;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod compare;
+pub mod environment;
 pub mod error;
 #[cfg(any(feature = "laboratory", feature = "window"))]
 pub mod false_colour;

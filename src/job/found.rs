@@ -96,7 +96,7 @@ impl<'a> Found<'a> {
             warnings
                 .push(format!("{why} can have no veil: that of the lens is left out, and its ghosts are all there is"));
         }
-        if veil.is_some() || look.strength != 0.0 && !scene.is_dark() {
+        if !look.is_panorama() && (veil.is_some() || look.strength != 0.0 && !scene.is_dark()) {
             warnings.extend(panorama::seam(&photo));
         }
         Ok(Self { look, facts: photo.facts(), photo, frame, bad, scene, stages, warnings, recovered, settings })

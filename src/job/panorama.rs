@@ -17,7 +17,7 @@ const BLACK: f64 = 1e-4;
 pub(super) fn seam(photo: &Photo) -> Option<String> {
     is_panorama(photo).then(|| {
         "the photo looks like a panorama of the whole sphere, whose left edge goes on at its right one: its glare ends at both, and \
-         the seam will show"
+         the seam will show; a veil in degrees goes all the way round by --projection equirectangular"
             .to_owned()
     })
 }

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use glam::DVec2;
 
-use crate::choices::{Evaluator, LengthUnit, Mix, Normalize, Sources};
+use crate::choices::{Evaluator, LengthUnit, Mix, Normalize, Projection, Sources};
 use crate::frame::Frame;
 use crate::scene::presets::{self, DEFAULT_PRESET};
 use crate::scene::{
@@ -205,8 +205,17 @@ impl Look {
         Cow::Owned(Self { lens: LookLens::Optical(fitted), ..self.clone() })
     }
 
-    /// What the lens makes of a light: nothing where its ghosts stand for a veil, and there is one.
+    /// Whether the photo is of all directions, as no lens shows them.
+    pub fn is_panorama(&self) -> bool {
+        self.projection() == Projection::Equirectangular
+    }
+
+    /// What the lens makes of a light: nothing where its ghosts stand for a veil, and there is one, and nothing in a panorama, which
+    /// has no axis.
     pub fn lens_ghosts(&self) -> &[LensGhost] {
+        if self.is_panorama() {
+            return &[];
+        }
         if self.veil.is_some() && self.lens.veil().is_some_and(|veil| veil.replaces_ghosts) {
             return &[];
         }

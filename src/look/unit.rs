@@ -34,10 +34,15 @@ impl Look {
     /// # Errors
     /// [`Error::Usage`] for a field that is none, and where nothing says it, with `why` it is needed.
     pub fn view(&self, photo: &Photo, why: &str) -> Result<View> {
-        if let Some(fov) = self.fov {
+        let whole = (self.projection() == Projection::Equirectangular).then_some(360.0);
+        if let Some(fov) = self.fov.or(whole) {
             check_fov(fov, Some(self.projection()))
                 .map_err(|fault| Error::Usage(format!("--fov: {}", fault.reason)))?;
-            return Ok(View::of_field(fov, &photo.frame, self.projection()));
+            let mut view = View::of_field(fov, &photo.frame, self.projection());
+            if whole.is_some() {
+                view.from = "all directions".to_owned();
+            }
+            return Ok(view);
         }
         let unsaid = |doubt: String| {
             Error::Usage(format!(

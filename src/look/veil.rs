@@ -189,6 +189,10 @@ impl Veil {
                 Ok(match projection {
                     Projection::Rectilinear => Geometry::Rectilinear { focal },
                     Projection::Fisheye => Geometry::Fisheye { focal },
+                    Projection::Equirectangular if !frame.is_whole() => {
+                        return fault("projection", "an equirectangular picture has all of its pixels stored".into());
+                    }
+                    Projection::Equirectangular => Geometry::Equirectangular,
                     // As it is in the middle.
                     Projection::Planar => Geometry::planar_degrees((1.0 / focal).to_degrees()),
                 })

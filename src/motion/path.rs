@@ -1,6 +1,6 @@
 //! What lights, or a camera, do at a time.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::Track;
 use crate::scene::Light;
@@ -80,6 +80,16 @@ impl LightPath {
 }
 
 impl Camera {
+    /// Unit vectors to its right, up and ahead; the panorama's centre is +x, what is left of it +y, its top +z.
+    pub fn axes(&self) -> [DVec3; 3] {
+        let [(sin_yaw, cos_yaw), (sin_pitch, cos_pitch), (sin_roll, cos_roll)] =
+            [self.yaw, self.pitch, self.roll].map(|degrees| degrees.to_radians().sin_cos());
+        let ahead = DVec3::new(cos_pitch * cos_yaw, -cos_pitch * sin_yaw, sin_pitch);
+        let level = DVec3::new(-sin_yaw, -cos_yaw, 0.0);
+        let above = level.cross(ahead);
+        [cos_roll * level - sin_roll * above, cos_roll * above + sin_roll * level, ahead]
+    }
+
     /// That of a path at a time.
     pub fn at(track: &Track<4>, sees: Sees, time: f64) -> Option<Self> {
         let [yaw, pitch, roll, fov] = track.at(time)?;

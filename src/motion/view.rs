@@ -58,6 +58,11 @@ impl Panorama {
         Ok(Self { photo, width: width as usize, height: height as usize })
     }
 
+    /// Its pixels, rows from the zenith down; none is infinite or no number.
+    pub fn photo(&self) -> &Photo {
+        &self.photo
+    }
+
     /// What a camera sees, on a picture of so many columns and rows whose width spans `fov` degrees; `beyond` are columns and
     /// rows outside each edge that are stored, too.
     pub fn view(&self, camera: &Camera, fov: f64, [columns, rows]: [u32; 2], beyond: [u32; 2]) -> Photo {
@@ -135,12 +140,7 @@ impl Panorama {
 
 impl Eye {
     fn new(camera: &Camera, focal: f64) -> Self {
-        let [(sin_yaw, cos_yaw), (sin_pitch, cos_pitch), (sin_roll, cos_roll)] =
-            [camera.yaw, camera.pitch, camera.roll].map(|degrees| degrees.to_radians().sin_cos());
-        let ahead = DVec3::new(cos_pitch * cos_yaw, -cos_pitch * sin_yaw, sin_pitch);
-        let level = DVec3::new(-sin_yaw, -cos_yaw, 0.0);
-        let above = level.cross(ahead);
-        let (right, up) = (cos_roll * level - sin_roll * above, cos_roll * above + sin_roll * level);
+        let [right, up, ahead] = camera.axes();
         Self { ahead, right, up, focal }
     }
 

@@ -9,6 +9,7 @@ mod optics;
 pub(crate) mod psf;
 mod reading;
 mod scene;
+mod surroundings;
 mod unit;
 mod veil;
 
@@ -20,5 +21,6 @@ pub use optics::{ApertureArgs, OpticsArgs};
 pub use psf::PsfArgs;
 pub use reading::ReadArgs;
 pub use scene::SceneArgs;
+pub use surroundings::{EnvironmentArgs, HoodArgs};
 pub use unit::UnitArgs;
 pub use veil::VeilArgs;

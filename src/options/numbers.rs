@@ -37,3 +37,39 @@ pub fn factor(text: &str) -> Result<f64, String> {
     let allowed = |&x: &f64| x == 0.0 || x >= 1.0;
     finite(text).ok().filter(allowed).ok_or_else(|| "expected 0, or a finite number of at least 1".to_owned())
 }
+
+/// Three finite angles in degrees.
+pub fn angles(text: &str) -> Result<[f64; 3], String> {
+    let parts: Result<Vec<f64>, String> = text.split(',').map(|part| finite(part.trim())).collect();
+    let angles = parts.ok().and_then(|parts| parts.try_into().ok());
+    angles.ok_or_else(|| "expected three angles in degrees, like 90,0,-10".to_owned())
+}
+
+/// Columns and rows, as 1920x1080.
+pub fn sides(text: &str) -> Result<[u32; 2], String> {
+    const MOST: u32 = 32768;
+    let side = |text: &str| text.trim().parse().ok().filter(|side| (1..=MOST).contains(side));
+    let both = text.split_once(['x', 'X', '×']).and_then(|(width, height)| Some([side(width)?, side(height)?]));
+    both.ok_or_else(|| format!("expected columns and rows, each from 1 to {MOST}, like 1920x1080"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sides_are_two_whole_numbers() {
+        assert_eq!((sides("1920x1080"), sides("96 × 54")), (Ok([1920, 1080]), Ok([96, 54])));
+        for bad in ["", "96", "0x54", "96x-1", "1e3x2", "40000x10", "96x54x3"] {
+            assert!(sides(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn angles_are_three_numbers() {
+        for bad in ["", "1,2", "1,2,3,4", "1,2,nan", "1,x,3", "1,,2,3", "inf,0,0"] {
+            assert!(angles(bad).is_err(), "{bad}");
+        }
+        assert_eq!(angles("-90, 0,1e1"), Ok([-90.0, 0.0, 10.0]));
+    }
+}

@@ -66,6 +66,15 @@ impl SceneArgs {
         given.flat_map(|path| std::iter::once(path.clone()).chain(scene::referred(path))).collect()
     }
 
+    /// The option by which a lens was named, where one was.
+    pub fn lens_option(&self) -> Option<&'static str> {
+        match (&self.lens, &self.preset) {
+            (Some(_), _) => Some("--lens"),
+            (None, Some(_)) => Some("--preset"),
+            (None, None) => None,
+        }
+    }
+
     /// The lens that is asked for.
     fn lens(&self) -> Result<Option<LookLens>> {
         let lens = match (&self.lens, &self.preset) {

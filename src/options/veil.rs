@@ -81,6 +81,22 @@ impl VeilArgs {
         Ok(look)
     }
 
+    /// Whether a look can be of a panorama, where it is; `lens` is the option by which a lens was named, if any.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for ghosts, which a picture of all directions has none of.
+    pub fn check_panorama(look: &Look, lens: Option<&str>) -> Result<()> {
+        let none = "an equirectangular picture of all directions has no lens's axis, and so no ghosts: its lights make a veil alone";
+        match lens {
+            _ if !look.is_panorama() => Ok(()),
+            Some(option) if !look.lens.ghosts().is_empty() => {
+                Err(Error::Usage(format!("{option}: {none}; leave {} out, or give --lens none", look.lens().name)))
+            }
+            _ if !look.ghosts.is_empty() => Err(Error::Usage(format!("--scene has ghosts, and {none}"))),
+            _ => Ok(()),
+        }
+    }
+
     fn veiled(&self, look: Look, tolerance: Option<f64>, aperture: &ApertureArgs) -> Result<Look> {
         let before = look.veil.as_ref().map(Veil::section);
         let adds = look.veil.as_ref().is_some_and(|veil| veil.adds);

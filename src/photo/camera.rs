@@ -38,7 +38,7 @@ impl View {
     pub fn of_field(degrees: f64, frame: &Frame, projection: Projection) -> Self {
         let width = frame.pixel_aspect * f64::from(frame.width);
         let focal = match projection {
-            Projection::Fisheye => width / degrees.to_radians(),
+            Projection::Fisheye | Projection::Equirectangular => width / degrees.to_radians(),
             Projection::Rectilinear | Projection::Planar => 0.5 * width / (0.5 * degrees).to_radians().tan(),
         };
         Self { focal, said: Some(degrees), from: "as given".to_owned() }
@@ -57,7 +57,7 @@ impl View {
     pub fn across(&self, frame: &Frame, projection: Projection) -> f64 {
         let width = frame.pixel_aspect * f64::from(frame.width);
         self.said.unwrap_or_else(|| match projection {
-            Projection::Fisheye => (width / self.focal).to_degrees(),
+            Projection::Fisheye | Projection::Equirectangular => (width / self.focal).to_degrees(),
             Projection::Rectilinear | Projection::Planar => 2.0 * (0.5 * width / self.focal).atan().to_degrees(),
         })
     }

@@ -64,7 +64,7 @@ pub(crate) use transfer::srgb_encode;
 pub(crate) use write::holds;
 pub use write::{WriteOptions, check_name, check_target, largest_value, write, write_unless};
 
-use crate::frame::Frame;
+use crate::frame::{Frame, Window};
 
 /// Why a decoder or encoder gave up; [`read()`] and [`write()`] add the file's name.
 type Reason = Box<dyn std::error::Error + Send + Sync>;
@@ -189,6 +189,37 @@ impl Photo {
         Self { frame: self.frame, pixels, source }
     }
 
+    /// The picture alone, without what is stored beyond it; transparent black where none of it is stored.
+    #[must_use]
+    pub fn cropped(self) -> Self {
+        if self.frame.is_whole() {
+            return self;
+        }
+        let Frame { width, height, .. } = self.frame;
+        let pixels = (0..height).flat_map(|row| self.picture_row(row).into_owned()).collect();
+        Self { frame: self.frame.with_window(Window { x: 0, y: 0, width, height }), pixels, ..self }
+    }
+
+    /// The same picture with other pixels beyond it: those of a larger window of `around`, whose picture is as large.
+    ///
+    /// # Panics
+    /// If the pictures differ in size, or if that window does not hold all of what is stored of this one.
+    #[must_use]
+    pub fn surrounded(mut self, around: Self) -> Self {
+        let (own, window) = (self.frame.window, around.frame.window);
+        assert_eq!([self.width(), self.height()], [around.width(), around.height()], "pictures of one size");
+        let [left, top] = [own.x - window.x, own.y - window.y]
+            .map(|before| usize::try_from(before).expect("the window holds all of the picture"));
+        let (columns, stored) = (own.width as usize, window.width as usize);
+        let mut pixels = around.pixels;
+        for (row, from) in self.pixels.chunks_exact(columns.max(1)).enumerate() {
+            pixels[(top + row) * stored + left..][..columns].copy_from_slice(from);
+        }
+        self.frame = self.frame.with_window(window);
+        self.pixels = pixels;
+        self
+    }
+
     /// What is known of the picture without any of its pixels, and without what else an OpenEXR file held.
     pub(crate) fn without_pixels(&self) -> Self {
         Self { frame: self.frame, pixels: Vec::new(), source: Source { exr: None, ..self.source.clone() } }
@@ -262,5 +293,31 @@ fn zeroed<T: bytemuck::Zeroable>(count: usize) -> Result<Vec<T>, Reason> {
     match bytemuck::allocation::try_zeroed_slice_box(count) {
         Ok(memory) => Ok(memory.into_vec()),
         Err(()) => Err(format!("not enough memory for {count} samples of {} bytes", size_of::<T>()).into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows of numbers from `first` on.
+    fn photo(width: u32, height: u32, first: u32) -> Photo {
+        Photo::new(width, height, (first..first + width * height).map(|k| [k as f32, 0.0, 0.0, 1.0]).collect())
+    }
+
+    fn red(photo: &Photo) -> Vec<f32> {
+        photo.pixels.iter().map(|pixel| pixel[0]).collect()
+    }
+
+    #[test]
+    fn what_is_stored_beyond_the_picture_is_cut_off_and_put_there_again() {
+        let mut wide = photo(5, 4, 0);
+        wide.frame = Frame::full(3, 2).with_window(Window { x: -1, y: -1, width: 5, height: 4 });
+        let cropped = wide.clone().cropped();
+        assert!(cropped.frame.is_whole());
+        assert_eq!(red(&cropped), [6.0, 7.0, 8.0, 11.0, 12.0, 13.0]);
+        assert_eq!(red(&cropped.surrounded(wide.clone())), red(&wide));
+        let other = photo(3, 2, 100).surrounded(wide.clone());
+        assert_eq!((other.frame, red(&other.cropped())), (wide.frame, red(&photo(3, 2, 100))));
     }
 }

@@ -97,6 +97,10 @@ fn kernel(path: &Path) -> Result<Kernel, psf::Fault> {
 
 /// Fields of view, in degrees, that a projection can have.
 pub fn check_fov(fov: f64, projection: Option<Projection>) -> Result<(), psf::Fault> {
+    if projection == Some(Projection::Equirectangular) {
+        let other = || psf::Fault::new("fov", format!("an equirectangular picture spans 360 degrees, and not {fov}"));
+        return if fov == 360.0 { Ok(()) } else { Err(other()) };
+    }
     let most = if projection == Some(Projection::Fisheye) { 360.0 } else { 179.0 };
     if (0.1..=most).contains(&fov) {
         return Ok(());

@@ -25,6 +25,10 @@ pub enum Geometry {
         /// The focal length, in pixels per radian.
         focal: f64,
     },
+    /// All directions, as an equirectangular picture has them: twice as wide as high, columns even steps of azimuth, rows even steps from
+    /// the zenith down. Its pixels are even all over their areas: what falls on a pixel of its own light is a part of its veil. For
+    /// kernels in degrees and per steradian.
+    Equirectangular,
 }
 
 /// The widest field that a picture may have, in degrees from corner to corner: beyond, no image of it is flat.
@@ -50,7 +54,7 @@ impl Geometry {
     /// The camera of a picture of so many columns and rows; none of a plane.
     pub(super) fn camera(&self, size: [usize; 2]) -> Option<Camera> {
         match *self {
-            Self::Planar { .. } => None,
+            Self::Planar { .. } | Self::Equirectangular => None,
             Self::Rectilinear { focal } => Some(Camera { projection: Projection::Rectilinear, focal, size }),
             Self::Fisheye { focal } => Some(Camera { projection: Projection::Equidistant, focal, size }),
         }
@@ -64,6 +68,7 @@ impl Geometry {
         let beyond = if border == Border::None { 1.0 } else { 2.0 };
         match *self {
             Self::Planar { pitch, .. } => [pitch, (beyond * diagonal * pitch).max(2.0 * pitch)],
+            Self::Equirectangular => [180.0 / height.max(1) as f64 / 64.0, 180.0],
             Self::Rectilinear { focal } => {
                 let half = 0.5 * diagonal / focal;
                 let least = 1.0 / (focal * (1.0 + half * half));
@@ -81,6 +86,11 @@ impl Geometry {
     pub fn solid_angle(&self, size: [usize; 2], [x, y]: [usize; 2]) -> f64 {
         match (*self, self.camera(size)) {
             (Self::Planar { solid_angle, .. }, _) => solid_angle,
+            (Self::Equirectangular, _) => {
+                let [width, height] = size.map(|side| side as f64);
+                let end = |row: usize| (std::f64::consts::PI * row as f64 / height).cos();
+                std::f64::consts::TAU / width * (end(y) - end(y + 1))
+            }
             (_, Some(camera)) => camera.point(x as f64, y as f64).solid_angle,
             (_, None) => 0.0,
         }
@@ -97,9 +107,13 @@ impl Geometry {
             Self::Rectilinear { focal } | Self::Fisheye { focal } if !usable(focal) => {
                 Err(Error::Geometry(format!("a focal length is a number of pixels above 0, and not {focal}")))
             }
-            Self::Rectilinear { .. } | Self::Fisheye { .. } if border != Border::None => Err(Error::Geometry(
-                "nothing is known of the sphere beyond a picture: only a plane has a border".into(),
-            )),
+            Self::Equirectangular if size[0] != 2 * size[1] => Err(Error::Geometry(format!(
+                "an equirectangular picture of all directions is twice as wide as high, and this is {} × {}",
+                size[0], size[1]
+            ))),
+            Self::Rectilinear { .. } | Self::Fisheye { .. } | Self::Equirectangular if border != Border::None => Err(
+                Error::Geometry("nothing is known of the sphere beyond a picture: only a plane has a border".into()),
+            ),
             Self::Fisheye { focal } if (size[0] as f64).hypot(size[1] as f64) / focal > WIDEST_FIELD.to_radians() => {
                 Err(Error::Geometry(format!("a fisheye's picture is at most {WIDEST_FIELD}° from corner to corner")))
             }

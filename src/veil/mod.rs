@@ -34,6 +34,7 @@ mod photo;
 mod picture;
 pub mod plan;
 pub mod reference;
+mod rings;
 mod simd;
 mod sphere;
 pub mod sweep;
@@ -52,6 +53,7 @@ pub use photo::{BadSources, Photo};
 pub use picture::{Energy, Picture};
 pub(crate) use plan::{Layers, Near, PERIOD, Placed};
 pub use plan::{Method, Plan, Predicted};
+pub(crate) use rings::Tabled;
 pub(crate) use simd::{Plane, Real};
 pub use transform::MOST_MEMORY;
 

@@ -6,6 +6,7 @@ use super::geometry::{Border, Geometry};
 use super::kernel::Kernel;
 use super::photo::{Photo, light};
 use super::picture::Picture;
+use super::rings;
 use super::sphere::{Camera, Point, angle};
 
 /// A rectangle of pixels: its first column and row, and how many of each.
@@ -36,6 +37,7 @@ pub fn veil(photo: &Photo, geometry: &Geometry, kernel: &Kernel, border: Border,
 pub fn at(photo: &Photo, geometry: &Geometry, kernel: &Kernel, border: Border, pixels: &[[usize; 2]]) -> Vec<[f64; 3]> {
     match (*geometry, geometry.camera(photo.size())) {
         (_, Some(camera)) => spherical(photo, &camera, kernel, pixels),
+        (Geometry::Equirectangular, _) => rings::reference(photo, |angle| kernel.at(angle), pixels),
         (Geometry::Planar { pitch, solid_angle }, None) => {
             let value = |distance: f64| solid_angle * kernel.at(pitch * distance);
             planar(photo, value, border, pixels)

@@ -4,6 +4,7 @@ mod animate;
 mod bad_input;
 mod calibrate;
 mod each_pixel;
+mod environment;
 mod extremes;
 mod harmonics;
 mod interrupted;

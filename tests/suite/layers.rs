@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 /// Modules that know nothing of GL, windows and the command line.
-const PURE: [&str; 17] = [
+const PURE: [&str; 18] = [
     "choices",
     "compare",
+    "environment",
     "error",
     "frame",
     "look",

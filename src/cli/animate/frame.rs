@@ -1,10 +1,11 @@
 //! Frame after frame: what stands still is there already, and what moves is added.
 
-use super::parts::{Maker, Part, Pixels, Shares, add, shell};
+use super::parts::{Maker, Part, Photos, Pixels, Shares, add, shell};
 use super::shot::{Cast, Shot};
 use super::told::{ErrorTold, PlanTold, Told, together, veils};
-use crate::frame::{Frame, Window};
+use crate::cli::surroundings::{Seen, StrayTold};
 use crate::job::VeilError;
+use crate::look::Look;
 use crate::motion::Sheet;
 use crate::photo::{self, Photo};
 use crate::scene::Goal;
@@ -25,6 +26,8 @@ pub struct FrameTold {
     /// Of all that is in the frame.
     pub error: Option<ErrorTold>,
     pub veil: Option<VeilError>,
+    /// What light from outside the frame did.
+    pub outside: Option<StrayTold>,
     /// What the frame took beside what stands still, without writing.
     pub milliseconds: f64,
     pub stages: Vec<(&'static str, f64)>,
@@ -161,50 +164,35 @@ impl FrameTold {
     }
 }
 
+/// What a camera sees of a place.
+pub enum View<'a> {
+    /// With what it does not see.
+    Lit(Seen<'a>),
+    /// By itself, with its field of view.
+    Dark(Photo, f64),
+}
+
 /// What a camera sees, with its glare: all of a frame is new.
 ///
 /// # Errors
-/// Those of [`Maker::compute`].
-pub fn seen(maker: &mut Maker<'_>, view: Photo, fov: f64) -> Result<Drawn> {
-    let look = crate::look::Look { fov: Some(fov), ..maker.look.clone() };
+/// Those of [`Maker::compute`] and [`Seen::look`].
+pub fn seen(maker: &mut Maker<'_>, view: View<'_>) -> Result<Drawn> {
     let wanted = maker.wanted();
-    let (photos, told, warnings) = maker.compute(&look, 1.0, view, wanted)?;
+    let (look, photo, lit) = match view {
+        View::Dark(photo, fov) => (Look { fov: Some(fov), ..maker.look.clone() }, photo, None),
+        View::Lit(mut seen) => (seen.look(maker.look)?, seen.take(), Some(seen)),
+    };
+    let (Photos { mut picture, mut glare }, told, warnings) = maker.compute(&look, 1.0, photo, wanted)?;
+    let outside = lit.map(|seen| seen.lay(&look, picture.as_mut(), glare.as_mut()));
     let parts = [&told];
     let asked = told.error.map_or(0.0, |error| error.asked);
     let frame = FrameTold { veil: veils(&parts), error: together(&parts, asked), ..FrameTold::of(Some(&told), &parts) };
     let warnings = [frame.warnings.clone(), warnings].concat();
-    let [picture, glare] = [photos.picture, photos.glare].map(|photo| photo.map(cropped));
-    Ok(Drawn { picture, glare, told: FrameTold { warnings, ..frame } })
-}
-
-/// The picture of a photo alone, without what is stored beyond it.
-fn cropped(photo: Photo) -> Photo {
-    let Frame { width, height, window, .. } = photo.frame;
-    if photo.frame.is_whole() {
-        return photo;
-    }
-    let [left, top] = [-window.x, -window.y].map(|side| side as usize);
-    let rows = photo.pixels.chunks_exact(window.width as usize).skip(top).take(height as usize);
-    let pixels = rows.flat_map(|row| row[left..left + width as usize].iter().copied()).collect();
-    let frame = photo.frame.with_window(Window { x: 0, y: 0, width, height });
-    Photo { frame, pixels, ..photo }
+    let [picture, glare] = [picture, glare].map(|photo| photo.map(Photo::cropped));
+    Ok(Drawn { picture, glare, told: FrameTold { warnings, outside, ..frame } })
 }
 
 /// Which frames are the same as the one before.
 pub fn repeats(shot: &Shot, same: impl Fn(usize, usize) -> bool) -> Vec<bool> {
     (0..shot.frames).map(|frame| frame > 0 && same(frame - 1, frame)).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_stored_beyond_the_picture_is_cut_off() {
-        let mut photo = Photo::new(5, 4, (0..20).map(|k| [k as f32, 0.0, 0.0, 1.0]).collect());
-        photo.frame = Frame::full(3, 2).with_window(Window { x: -1, y: -1, width: 5, height: 4 });
-        let photo = cropped(photo);
-        assert!(photo.frame.is_whole());
-        assert_eq!(photo.pixels.iter().map(|pixel| pixel[0]).collect::<Vec<_>>(), [6.0, 7.0, 8.0, 11.0, 12.0, 13.0]);
-    }
 }

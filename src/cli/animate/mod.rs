@@ -18,7 +18,8 @@ use crate::cli::apply::ProofArgs;
 use crate::cli::apply::look::LookArgs;
 use crate::cli::encoding::EncodingArgs;
 use crate::look::Look;
-use crate::options::{AccuracyArgs, FindArgs, ReadArgs, SceneArgs, VeilArgs};
+use crate::options::numbers::sides;
+use crate::options::{AccuracyArgs, FindArgs, HoodArgs, ReadArgs, SceneArgs, VeilArgs};
 
 pub use run::run;
 
@@ -58,6 +59,9 @@ pub struct Args {
 
     #[command(flatten)]
     motion: MotionArgs,
+
+    #[command(flatten)]
+    hood: HoodArgs,
 
     #[command(flatten)]
     reading: ReadArgs,
@@ -117,6 +121,10 @@ struct MotionArgs {
     #[arg(long, value_name = "FILE", conflicts_with = "photo")]
     panorama: Option<PathBuf>,
 
+    /// Whether what the camera does not see of the panorama shines, too: it scatters light over the picture, and its lights make ghosts
+    #[arg(long, value_enum, default_value_t = Lit::Lit, requires = "panorama")]
+    surroundings: Lit,
+
     /// Whether the lights of the path are drawn, too, as lamps of their size, or only their glare is seen
     #[arg(long, value_enum, default_value_t = Seen::Shown)]
     lamps: Seen,
@@ -141,6 +149,14 @@ enum Seen {
 enum Outside {
     Fade,
     Keep,
+}
+
+/// `--surroundings`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+enum Lit {
+    Lit,
+    Dark,
 }
 
 /// What is written beside the pictures, and how.
@@ -171,26 +187,5 @@ impl Args {
     /// Columns and rows where no photo gives them.
     fn sides(&self) -> [u32; 2] {
         self.motion.frame.unwrap_or([1920, 1080])
-    }
-}
-
-/// Columns and rows, as 1920x1080.
-fn sides(text: &str) -> Result<[u32; 2], String> {
-    const MOST: u32 = 32768;
-    let side = |text: &str| text.trim().parse().ok().filter(|side| (1..=MOST).contains(side));
-    let both = text.split_once(['x', 'X', '×']).and_then(|(width, height)| Some([side(width)?, side(height)?]));
-    both.ok_or_else(|| format!("expected columns and rows, each from 1 to {MOST}, like 1920x1080"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn sides_are_two_whole_numbers() {
-        assert_eq!((sides("1920x1080"), sides("96 × 54")), (Ok([1920, 1080]), Ok([96, 54])));
-        for bad in ["", "96", "0x54", "96x-1", "1e3x2", "40000x10", "96x54x3"] {
-            assert!(sides(bad).is_err(), "{bad}");
-        }
     }
 }

@@ -10,6 +10,7 @@ use super::shot::{Lit, Shot};
 use super::told::{ErrorTold, PlanTold, Told};
 use super::{Args, Outside, Seen, summary};
 use crate::choices::{LengthUnit, Mix, Normalize};
+use crate::cli::surroundings::StrayTold;
 use crate::job::VeilError;
 use crate::look::Look;
 use crate::motion::{Camera, Path};
@@ -172,7 +173,8 @@ impl FrameTold {
             Some(ErrorTold { asked, measured, .. }) if measured <= asked => {}
             Some(ErrorTold { asked, measured, .. }) => return Err(Error::ToleranceMissed { asked, measured }),
         }
-        self.veil.map_or(Ok(()), |veil| veil.check())
+        self.veil.map_or(Ok(()), |veil| veil.check())?;
+        self.outside.as_ref().and_then(|outside| outside.error).map_or(Ok(()), |error| error.check())
     }
 }
 
@@ -225,6 +227,8 @@ struct FrameReport<'a> {
     plan: Option<&'a PlanTold>,
     error: Option<ErrorTold>,
     veil: Option<VeilError>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    surroundings: Option<&'a StrayTold>,
     computed_ms: f64,
     stages: Vec<Stage>,
     written_ms: f64,
@@ -336,6 +340,7 @@ impl<'a> FrameReport<'a> {
             plan: told.plan.as_ref(),
             error: told.error,
             veil: told.veil,
+            surroundings: told.outside.as_ref(),
             computed_ms: told.milliseconds,
             stages: told.stages.iter().map(|&(stage, wall_ms)| Stage { stage, wall_ms }).collect(),
             written_ms: *written_ms,

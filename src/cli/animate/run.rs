@@ -4,14 +4,15 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::Args;
-use super::frame::{Drawn, Lights, repeats, seen};
+use super::frame::{Drawn, Lights, View, repeats, seen};
 use super::outputs::{self, Paths};
 use super::parts::Maker;
 use super::report::Log;
 use super::shot::Shot;
+use super::{Args, Lit};
 use crate::choices::Normalize;
 use crate::cli::apply::pipeline;
+use crate::cli::surroundings::Surroundings;
 use crate::job::Step;
 use crate::look::Look;
 use crate::motion::{self, LightPath, Panorama, Sees, Sheet, Track};
@@ -57,6 +58,11 @@ fn of_lights<'a>(
             "--panorama is what a camera sees, and the path is of lights: give it yaw, pitch and roll".into(),
         ));
     }
+    if !args.hood.is_empty() {
+        return Err(Error::Usage(
+            "--hood and --stray are of what a camera does not see, and the path is of lights".into(),
+        ));
+    }
     if look.normalize != Normalize::None {
         let reason = "lights that move need --normalize none: what they add to the glare is computed by itself";
         return Err(Error::Usage(reason.into()));
@@ -95,7 +101,17 @@ fn of_camera<'a>(
         return Err(Error::Usage("the path is of a camera: --panorama names what it sees".into()));
     };
     let unsaid = look.fov;
-    let panorama = panorama(args, path)?;
+    let lit = args.motion.surroundings == Lit::Lit;
+    if !lit && !args.hood.is_empty() {
+        return Err(Error::Usage(
+            "--hood and --stray are of light from outside the frame, and the surroundings are dark".into(),
+        ));
+    }
+    let place = if lit {
+        Place::Lit(Surroundings::read(path, &args.reading.options(), args.hood, look)?)
+    } else {
+        Place::Dark(panorama(args, path)?)
+    };
     let (sides, overscan) = (args.sides(), args.reading.options().overscan);
     let beyond = sides.map(|side| (f64::from(side) * overscan).round() as u32);
     let camera = |frame: usize| shot.camera(track, sees, frame, unsaid);
@@ -107,12 +123,21 @@ fn of_camera<'a>(
     progress.say(Step::Computing.to_string());
     let view = |index: usize| {
         let (camera, fov) = camera(index);
-        Ok(panorama.view(&camera, fov, sides, beyond))
+        match &place {
+            Place::Lit(surroundings) => surroundings.seen(&camera, fov, sides, beyond, None).map(View::Lit),
+            Place::Dark(panorama) => Ok(View::Dark(panorama.view(&camera, fov, sides, beyond), fov)),
+        }
     };
     let prepare = || Maker::new(args, look);
-    let make = |maker: &mut Maker<'_>, index: usize, view: Photo| seen(maker, view, camera(index).1);
+    let make = |maker: &mut Maker<'_>, _: usize, view: View<'_>| seen(maker, view);
     through(&mut log, progress, &repeats, view, prepare, make)?;
     Ok(log)
+}
+
+/// Where a camera is.
+enum Place {
+    Lit(Surroundings),
+    Dark(Panorama),
 }
 
 fn panorama(args: &Args, path: &Path) -> Result<Panorama> {

@@ -3,6 +3,8 @@
 use super::Args;
 use super::outputs::{Paths, glare_options, picture_options};
 use crate::Result;
+use crate::cli::surroundings::{Seen, StrayTold};
+use crate::frame::Frame;
 use crate::gpu::Device;
 use crate::job::{Computer, Done, Found, Stages, Wanted};
 use crate::look::Look;
@@ -14,6 +16,8 @@ pub struct Job<'a, Work> {
     pub args: &'a Args,
     pub paths: &'a Paths,
     pub work: Work,
+    /// What light from outside the frame did.
+    pub outside: Option<StrayTold>,
 }
 
 impl<'a> Job<'a, Found<'a>> {
@@ -33,7 +37,7 @@ impl<'a> Job<'a, Found<'a>> {
     /// Those of [`Paths::check`] and [`Found::new`].
     pub fn found(args: &'a Args, paths: &'a Paths, look: &'a Look, photo: Photo, stages: Stages) -> Result<Self> {
         paths.check(args, &photo)?;
-        Ok(Self { args, paths, work: Found::new(look, photo, stages)? })
+        Ok(Self { args, paths, work: Found::new(look, photo, stages)?, outside: None })
     }
 
     /// Lays the glare over the photo; without a computer there is none.
@@ -41,19 +45,45 @@ impl<'a> Job<'a, Found<'a>> {
     /// # Errors
     /// Those of [`Found::compute`].
     pub fn compute(self, computer: Option<&mut Computer>, progress: &Progress) -> Result<Job<'a, Done<'a>>> {
-        let Self { args, paths, work } = self;
+        let Self { args, paths, work, outside } = self;
         let wanted = Wanted {
             // A report alone tells of a picture that nobody keeps.
             picture: paths.output.is_some() || paths.glare.is_none(),
-            glare: paths.glare.is_some(),
+            // What comes from outside is told as a share of it.
+            glare: paths.glare.is_some() || args.surroundings.environment.is_some(),
             times: args.verbose || args.output_options.report.is_some() || work.look.accuracy.goal.budget().is_some(),
             verify: args.proof.verify,
         };
-        Ok(Job { args, paths, work: work.compute(computer, wanted, progress)? })
+        Ok(Job { args, paths, work: work.compute(computer, wanted, progress)?, outside })
     }
 }
 
 impl Job<'_, Done<'_>> {
+    /// Adds what comes from outside the frame, and leaves the picture alone of what was stored.
+    #[must_use]
+    pub fn surrounded(mut self, seen: &Seen<'_>) -> Self {
+        let Done { look, picture, glare, frame, facts, stages, warnings, .. } = &mut self.work;
+        let told = seen.lay(look, picture.as_mut(), glare.as_mut());
+        for photo in [picture, glare] {
+            *photo = photo.take().map(Photo::cropped);
+        }
+        *frame = Frame { window: Frame::full(frame.width, frame.height).window, ..*frame };
+        facts.frame.window = frame.window;
+        stages.0.push(("outside", told.milliseconds));
+        warnings.extend(told.error.and_then(|error| Some(error.check().err()?.to_string())));
+        self.outside = Some(told);
+        self
+    }
+
+    /// An error where the glare, or a veil, is further from the truth than was asked.
+    ///
+    /// # Errors
+    /// Those of [`Done::check`] and of the veil from outside.
+    pub fn check(&self) -> Result<()> {
+        self.work.check()?;
+        self.outside.as_ref().and_then(|outside| outside.error).map_or(Ok(()), |error| error.check())
+    }
+
     /// Writes what is asked for: the picture, the glare alone.
     ///
     /// # Errors

@@ -19,6 +19,7 @@ use crate::certificate::Verify;
 use crate::cli::encoding::EncodingArgs;
 use crate::look::Look;
 use crate::options::AccuracyArgs;
+use crate::options::EnvironmentArgs;
 use crate::options::FindArgs;
 use crate::options::ReadArgs;
 use crate::options::SceneArgs;
@@ -43,7 +44,7 @@ pub use run::run;
 #[command(after_help = EXAMPLES)]
 pub struct Args {
     /// The photo, or several: OpenEXR, Radiance HDR, PFM, TIFF, PNG or JPEG
-    #[arg(value_name = "INPUT", required = true)]
+    #[arg(value_name = "INPUT", required_unless_present = "environment")]
     inputs: Vec<PathBuf>,
 
     /// The picture: .exr .hdr .pfm .tif .tiff .png .jpg .jpeg; for several photos, a folder or a pattern
@@ -81,6 +82,9 @@ pub struct Args {
     veil: VeilArgs,
 
     #[command(flatten)]
+    surroundings: EnvironmentArgs,
+
+    #[command(flatten)]
     find: FindArgs,
 
     #[command(flatten)]
@@ -104,6 +108,8 @@ Examples:
   vglare apply night.exr -o veiled.exr --glare glare.exr --report report.json
   vglare apply night.exr -o veiled.exr --scene scene.toml --tolerance 1e-4 --strict
   vglare apply night.exr -o veiled.exr --veil cie --age 60 --fov 50 --projection planar --lens none
+  vglare apply night.exr -o veiled.exr --veil cie --environment street.exr --view 20,5,0 --fov 60
+  vglare apply --environment street.exr --view 20,5,0 --fov 60 --frame 960x540 -o out.exr --veil cie
   vglare apply night.exr -o veiled.exr --budget 20 --verify full
   vglare apply night.exr --glare glare.exr --depth half
   vglare apply shot.*.exr -o veiled/
@@ -111,6 +117,14 @@ Examples:
   vglare apply shot.*.exr -o 'previews/{name}.png' --keep-going --quiet";
 
 impl Args {
+    /// The photos; where there are none, what one is seen of.
+    fn photos(&self) -> &[PathBuf] {
+        match &self.surroundings.environment {
+            Some(environment) if self.inputs.is_empty() => std::slice::from_ref(environment),
+            _ => &self.inputs,
+        }
+    }
+
     /// The look that the files and options give.
     ///
     /// # Errors
@@ -122,7 +136,11 @@ impl Args {
             &self.scene.optics.aperture,
         )?);
         let (find, accuracy) = (self.find.over(look.find), self.accuracy.over(look.accuracy));
-        self.scene.unit.check(&look)?;
+        self.surroundings.check()?;
+        VeilArgs::check_panorama(&look, self.scene.lens_option())?;
+        if self.surroundings.environment.is_none() {
+            self.scene.unit.check(&look)?;
+        }
         Ok(Look { find, accuracy, ..look })
     }
 }

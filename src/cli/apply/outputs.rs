@@ -28,7 +28,7 @@ impl Paths {
     /// Those of a single photo, as they were given.
     fn single(args: &Args) -> Self {
         let glare = args.output_options.glare.clone();
-        Self { input: args.inputs[0].clone(), output: args.output.clone(), glare }
+        Self { input: args.photos()[0].clone(), output: args.output.clone(), glare }
     }
 
     /// The files that the photo becomes.
@@ -87,7 +87,7 @@ pub enum Work {
 /// [`Error::Write`] for a name that cannot be written, [`Error::Exists`] where a file is there and must not be replaced:
 /// before anything is read.
 pub fn work(args: &Args) -> Result<Work> {
-    let several = args.inputs.len() > 1;
+    let several = args.photos().len() > 1;
     let names = |given: Option<&Path>, option: &str| {
         let named = |given: &Path| match Names::new(given) {
             Some(names) => Ok(names),
@@ -108,7 +108,7 @@ pub fn work(args: &Args) -> Result<Work> {
         let of = |names: &Option<Names>| names.as_ref().map(|names| names.of(input)).transpose();
         Ok(Paths { input: input.clone(), output: of(&pictures)?, glare: of(&glare)? })
     };
-    let frames = args.inputs.iter().map(frame).collect::<Result<Vec<_>>>()?;
+    let frames = args.photos().iter().map(frame).collect::<Result<Vec<_>>>()?;
     apart(args, &frames)?;
     pictures.iter().chain(&glare).try_for_each(|names| room(names.place()))?;
     for path in frames.iter().flat_map(Paths::pictures) {
@@ -184,7 +184,7 @@ fn apart(args: &Args, frames: &[Paths]) -> Result<()> {
             _ => {}
         }
     }
-    for path in args.scene.files().into_iter().chain(args.veil.files().cloned()) {
+    for path in args.scene.files().into_iter().chain(args.veil.files().chain(&args.surroundings.environment).cloned()) {
         let option = match maker(&path) {
             None => continue,
             Some(None) => "--report",

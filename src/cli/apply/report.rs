@@ -8,6 +8,7 @@ use crate::certificate::Certificate;
 use crate::choices::{LengthUnit, LightBy, Mix, Normalize, Sources};
 use crate::cli::lights::FirefliesJson;
 use crate::cli::plan::CostModelReport;
+use crate::cli::surroundings::StrayTold;
 use crate::gpu::{Info, PassTime};
 use crate::job::{Computed, Done, EachPixel, Veiled};
 use crate::look::{Gathered, Look, LookLens};
@@ -31,6 +32,9 @@ pub struct Report<'a> {
     mix: Mix,
     recover: RecoverReport,
     veil: Option<&'a Veiled>,
+    /// What light from outside the frame did.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    surroundings: Option<&'a StrayTold>,
     plan: Option<&'a Plan>,
     cost: Option<CostReport<'a>>,
     notes: &'a [String],
@@ -134,7 +138,7 @@ pub struct Stage {
 
 impl<'a> Report<'a> {
     pub fn new(job: &'a Job<'_, Done<'_>>) -> Self {
-        let Job { args: _, paths, work } = job;
+        let Job { args: _, paths, work, outside } = job;
         // What a look has new is to be told, too.
         let &Look {
             description: _,
@@ -168,6 +172,7 @@ impl<'a> Report<'a> {
             mix,
             recover: RecoverReport { asked: find.recover, done: work.scene.recovery.clone().unwrap_or_default() },
             veil: work.veiled.as_ref(),
+            surroundings: outside.as_ref(),
             plan: computed.map(|computed| &computed.planning.plan),
             cost: computed.map(|computed| cost_report(computed, accuracy.goal)),
             notes: computed.map_or(&[], |computed| &computed.planning.notes),

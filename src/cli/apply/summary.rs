@@ -30,6 +30,7 @@ pub fn print(job: &Job<'_, Done<'_>>) -> Result<()> {
             about_veil(out, veiled)?;
             veiled.notes.iter().try_for_each(|note| writeln!(out, "note     {note}"))?;
         }
+        job.outside.iter().try_for_each(|outside| writeln!(out, "{outside}"))?;
         if let Some(computed) = &job.work.computed {
             about_plan(out, job, computed)?;
             computed.planning.notes.iter().try_for_each(|note| writeln!(out, "note     {note}"))?;
@@ -94,6 +95,7 @@ fn about_scene(out: &mut dyn Write, scene: &Gathered, look: &Look) -> io::Result
     if look.lens_ghosts().is_empty() && scene.ghosts.is_empty() {
         return match look.lens.ghosts() {
             [] => writeln!(out, "lens     none, so no ghosts"),
+            _ if look.is_panorama() => writeln!(out, "lens     none: a picture of all directions has no ghosts"),
             _ => writeln!(out, "lens     {}: a veil in place of its ghosts", look.lens().name),
         };
     }
@@ -148,7 +150,9 @@ fn about_veil(out: &mut dyn Write, veiled: &Veiled) -> io::Result<()> {
     let VeilSeen { parameters, projection, fov, fov_from, border: _ } = seen;
     write!(out, "veil     {}", parameters.psf)?;
     if let Some((fov, from)) = fov.zip(fov_from.as_ref()) {
-        write!(out, ", {from}: {} across a {} picture", text::angle(fov), said(projection))?;
+        let projection = said(projection);
+        let article = if projection.starts_with('e') { "an" } else { "a" };
+        write!(out, ", {from}: {} across {article} {projection} picture", text::angle(fov))?;
     }
     let mean = |values: [f64; 3]| values.into_iter().sum::<f64>() / 3.0;
     let by = text::summed(&veiled.summed_by, veiled.terms);

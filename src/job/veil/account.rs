@@ -111,9 +111,12 @@ pub(super) struct Loss {
 }
 
 impl Loss {
-    pub fn new(veil: &Wanted, seat: Seat, strength: f64) -> Self {
-        let strength = if veil.adds { 0.0 } else { strength };
-        let shares = [veil.psf().energies(), veil.psf().centres()].map(|shares| shares.map(|share| strength * share));
+    pub fn new(wanted: &Wanted, seat: Seat, strength: f64) -> Self {
+        let strength = if wanted.adds { 0.0 } else { strength };
+        // Even pixels keep nothing: what falls on them of their own light is in their veil.
+        let evenly = matches!(seat.geometry, veil::Geometry::Equirectangular);
+        let centres = if evenly { [0.0; 3] } else { wanted.psf().centres() };
+        let shares = [wanted.psf().energies(), centres].map(|shares| shares.map(|share| strength * share));
         Self { shares, seat }
     }
 

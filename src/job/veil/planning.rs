@@ -170,6 +170,10 @@ fn kernels(psf: &Psf, pixels: Pixels, tolerance: f64) -> Result<Vec<Kernel>> {
     let is_planar = matches!(pixels.geometry, Geometry::Planar { .. });
     let wanted: Psf = psf.clone();
     let value = move |angle: f64| wanted.value(angle);
+    if matches!(pixels.geometry, Geometry::Equirectangular) {
+        // Summed as it is.
+        return Ok(vec![Kernel::new(value, Mixture::default()).map_err(failed)?]);
+    }
     let Some(mixture) = positive(psf, range, tolerance, if is_planar { LOOSER } else { f64::INFINITY })? else {
         if !is_planar {
             return Err(Error::Plan(format!(

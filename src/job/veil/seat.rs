@@ -45,7 +45,7 @@ impl Seat {
     pub fn new(wanted: &Wanted, frame: &Frame, view: Option<&View>) -> Result<Self> {
         let geometry = wanted.geometry(frame, view).map_err(told)?;
         let stored = [frame.window.width as usize, frame.window.height as usize];
-        if matches!(geometry, Geometry::Planar { .. }) {
+        if matches!(geometry, Geometry::Planar { .. } | Geometry::Equirectangular) {
             return Ok(Self { geometry, size: stored, stored, first: [0, 0] });
         }
         let along = |first: i32, stored: u32, all: u32| {

@@ -7,7 +7,7 @@ mod summary;
 use std::path::PathBuf;
 
 use crate::options::ReadArgs;
-use crate::options::numbers::finite;
+use crate::options::numbers::{self, finite};
 use crate::series::sphere::HIGHEST_DEGREE;
 
 pub use run::run;
@@ -100,11 +100,7 @@ fn degree(text: &str) -> Result<usize, String> {
 }
 
 fn angles(text: &str) -> Result<Angles, String> {
-    let angles: Vec<f64> = text.split(',').filter_map(|angle| finite(angle.trim()).ok()).collect();
-    match (text.split(',').count(), angles[..].try_into()) {
-        (3, Ok(angles)) => Ok(Angles(angles)),
-        _ => Err("expected three angles in degrees, like 90,0,-10".to_owned()),
-    }
+    numbers::angles(text).map(Angles)
 }
 
 fn size(text: &str) -> Result<Size, String> {
@@ -127,10 +123,6 @@ mod tests {
             assert!(degree(bad).is_err(), "{bad}");
         }
         assert_eq!((degree("0"), degree("1500")), (Ok(0), Ok(1500)));
-        for bad in ["", "1,2", "1,2,3,4", "1,2,nan", "1,x,3", "1,,2,3", "inf,0,0"] {
-            assert!(angles(bad).is_err(), "{bad}");
-        }
-        assert_eq!(angles("-90, 0,1e1"), Ok(Angles([-90.0, 0.0, 10.0])));
         for bad in ["", "512", "512x512", "0x0", "512x-256", "4294967296x2147483648", "40000x20000", "3x1"] {
             assert!(size(bad).is_err(), "{bad}");
         }

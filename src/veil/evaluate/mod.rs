@@ -57,6 +57,7 @@ impl Plan {
             Way::Sphere(spherical) => Veil { certified: [bound; 3], ..spherical.evaluate(photo) },
             Way::Direct(geometry, kernel) => direct(photo, geometry, kernel),
             Way::Transform(transform) => transform.evaluate(photo),
+            Way::Rings(rings) => rings.evaluate(photo),
         })
     }
 }

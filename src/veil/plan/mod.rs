@@ -32,6 +32,7 @@ use super::evaluate::{Pool, Workspace};
 use super::geometry::{Border, Geometry};
 use super::kernel::{Gaussian, Kernel};
 use super::picture::Picture;
+use super::rings::{self, Rings};
 use super::transform::{self, Choice, Transform, pyramid_nanoseconds};
 use choose::{Chooser, Chosen};
 use samples::Samples;
@@ -110,6 +111,8 @@ pub(super) enum Way {
     Direct(Geometry, Kernel),
     /// On a plane, by the transform of photo and kernel.
     Transform(Arc<Transform>),
+    /// On the whole sphere, by transforms along its rows.
+    Rings(Arc<Rings>),
 }
 
 /// How a veil is summed.
@@ -120,6 +123,8 @@ pub enum Method {
     Pyramid,
     /// The same on the sphere.
     Sphere,
+    /// Transforms along the rows of an equirectangular picture.
+    Rings,
     /// Every source at every pixel.
     Sum,
     /// The transform of the photo times that of the kernel.
@@ -134,6 +139,7 @@ impl std::fmt::Display for Method {
         f.write_str(match self {
             Self::Pyramid => "pyramid",
             Self::Sphere => "sphere",
+            Self::Rings => "rings",
             Self::Sum => "sum",
             Self::Transform { .. } => "transform",
         })
@@ -175,9 +181,33 @@ impl Plan {
             (Geometry::Planar { pitch, solid_angle }, _) => {
                 Self::on_plane([pitch, solid_angle], kernel, transform::Task { size, border, tolerance })
             }
+            (Geometry::Equirectangular, _) => Self::rings(kernel, size, tolerance),
             (_, Some(camera)) => Self::spherical(geometry, camera, kernel, tolerance),
             _ => Err(Error::Geometry("this geometry has no camera".into())),
         }
+    }
+
+    /// On the whole sphere.
+    fn rings(kernel: &Kernel, size: [usize; 2], tolerance: f64) -> Result<Self, Error> {
+        for step in 0..=1800 {
+            let angle = 0.1 * f64::from(step);
+            check(kernel.at(angle), angle)?;
+        }
+        let rings = Rings::new(kernel, size);
+        // Written so that a bound that is no number is refused, too.
+        if rings.bound <= tolerance {
+            let predicted = Predicted {
+                bound: rings.bound,
+                rounding: rings::ROUNDING,
+                operations: rings.operations(),
+                direct: 0,
+                lattices: Vec::new(),
+                dropped: kernel.mixture().terms.len(),
+                reach: 0.0,
+            };
+            return Ok(Self { size, predicted, way: Way::Rings(Arc::new(rings)) });
+        }
+        Err(Error::OutOfReach { asked: tolerance, best: rings.bound, distance: 0.0 })
     }
 
     /// The veil on a plane of any function of the distance or angle: it may be negative, steep, or wide. Where it is negative, the
@@ -306,6 +336,7 @@ impl Plan {
         match &self.way {
             Way::Plane(_) => Method::Pyramid,
             Way::Sphere(_) => Method::Sphere,
+            Way::Rings(_) => Method::Rings,
             Way::Direct(..) => Method::Sum,
             Way::Transform(transform) => match transform.points() {
                 Some(points) => Method::Transform { points },

@@ -5,6 +5,7 @@ mod golden;
 mod kernels;
 mod photos;
 mod planar;
+mod rings;
 mod spherical;
 mod transform;
 

@@ -30,9 +30,14 @@ const TOLERANCE: Number = Number {
     logarithmic: true,
 };
 
-const PROJECTIONS: [(Projection, &str, &str); 3] = [
+const PROJECTIONS: [(Projection, &str, &str); 4] = [
     (Projection::Rectilinear, "rectilinear", "As nearly every lens: straight lines stay straight"),
     (Projection::Fisheye, "fisheye", "Distances from the middle are angles"),
+    (
+        Projection::Equirectangular,
+        "equirectangular",
+        "All directions, in a picture twice as wide as high: a veil without ghosts",
+    ),
     (Projection::Planar, "planar", "Distances are angles everywhere: right in the middle of the picture only"),
 ];
 
@@ -108,7 +113,7 @@ pub fn field_of_view(ui: &mut Ui, document: &mut Document) {
     let (projection, frame) = (look.projection(), &document.photo.frame);
     let view = Look { fov: None, ..look.clone() }.view(&document.photo, "angles are needed");
     let said = view.as_ref().ok().map(|view| (view.across(frame, projection), view.from.clone()));
-    let most = if projection == Projection::Fisheye { 360.0 } else { 179.0 };
+    let most = if matches!(projection, Projection::Fisheye | Projection::Equirectangular) { 360.0 } else { 179.0 };
     let number = Number {
         name: "Field",
         about: "The field of view: the angle that the picture's width spans.",
