@@ -8,3 +8,4 @@ pub mod info;
 pub mod lights;
 pub mod plan;
 pub mod presets;
+pub mod remove;

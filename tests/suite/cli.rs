@@ -16,6 +16,7 @@ mod preset_veils;
 mod real_lens;
 mod recover;
 mod refusals;
+mod remove;
 mod rex;
 mod scarce;
 mod sequence;
