@@ -147,6 +147,21 @@ pub enum Error {
         measured: f64,
     },
 
+    /// Nothing says how far an answer is from the truth, and an answer without that is none.
+    #[error("it cannot be proved: {0}")]
+    Unproved(String),
+
+    /// A photo without its veil, veiled again, is further from the photo than the tolerance allows.
+    #[error(
+        "the photo without its veil, veiled again, is off by {measured:.1e} of its brightest sample, and {asked:.1e} was asked"
+    )]
+    RemovalMissed {
+        /// What was asked, relative to the brightest sample of the same channel.
+        asked: f64,
+        /// The largest difference that was measured, in the same measure.
+        measured: f64,
+    },
+
     /// What was rendered is not finite where the photo is: too bright for 32-bit floats, or a driver's fault.
     #[error("the glare is infinite or undefined at {} where the photo is not; nothing is written", counted(*pixels))]
     NotFinite {
@@ -290,6 +305,8 @@ impl Error {
             | Self::ToleranceMissed { .. }
             | Self::EachPixelMissed { .. }
             | Self::VeilMissed { .. }
+            | Self::RemovalMissed { .. }
+            | Self::Unproved(_)
             | Self::FramesMissed { .. }
             | Self::Missed { .. } => 3,
             Self::NoContext { .. } | Self::NoDisplay { .. } => 4,

@@ -8,4 +8,5 @@ pub mod info;
 pub mod lights;
 pub mod plan;
 pub mod presets;
+pub mod remove;
 mod surroundings;

@@ -49,7 +49,8 @@ pub(crate) use planning::request;
 pub use planning::{Planning, plan};
 pub use settings::{bright_light, settings};
 pub use veil::{
-    Ledger, MOST_LAYERS, NoSources, VeilError, VeilLayers, VeilPlanned, VeilSeen, VeilSums, Veiled, plan_veil,
+    Amplification, Clipped, Ledger, MOST_LAYERS, Negative, NoSources, Removal, RemovalError, Removed, Removing,
+    VeilError, VeilLayers, VeilPlanned, VeilSeen, VeilSums, Veiled, plan_veil, remove,
 };
 #[cfg(feature = "laboratory")]
 pub(crate) use veil::{Trial, plan_of, trials};

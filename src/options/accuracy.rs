@@ -7,7 +7,7 @@ use crate::choices::Evaluator;
 use crate::gpu::Info;
 use crate::look::Accuracy;
 use crate::options::BackendChoice;
-use crate::options::numbers::{finite, positive};
+use crate::options::numbers::{finite, positive, tolerance};
 use crate::plan;
 use crate::scene::Goal;
 
@@ -101,10 +101,6 @@ impl AccuracyArgs {
 /// `--degree`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Degree([u32; 2]);
-
-fn tolerance(text: &str) -> Result<f64, String> {
-    finite(text).ok().filter(|&x| x > 0.0 && x < 1.0).ok_or_else(|| "expected a number between 0 and 1".to_owned())
-}
 
 fn budget(text: &str) -> Result<f64, String> {
     finite(text).ok().filter(|&x| x > 0.0).ok_or_else(|| "expected a positive number of milliseconds".to_owned())

@@ -5,7 +5,7 @@ use crate::choices::{Beyond, LightBy, LightShape};
 use crate::scene::{FindOptions, Recover};
 
 /// What counts as a light in a photo.
-#[derive(Debug, Clone, clap::Args)]
+#[derive(Debug, Clone, Default, clap::Args)]
 #[command(next_help_heading = "Lights in the photo")]
 pub struct FindArgs {
     /// What tells light from the rest: a pixel's brightest channel, by which a red lamp is as bright as a white one, or its

@@ -13,6 +13,11 @@ pub fn positive(text: &str) -> Result<f64, String> {
     finite(text).ok().filter(|&x| x > 0.0).ok_or_else(|| "expected a positive finite number".to_owned())
 }
 
+/// A number between 0 and 1.
+pub fn tolerance(text: &str) -> Result<f64, String> {
+    finite(text).ok().filter(|&x| x > 0.0 && x < 1.0).ok_or_else(|| "expected a number between 0 and 1".to_owned())
+}
+
 /// Two finite numbers, x and y.
 pub fn point(text: &str) -> Result<DVec2, String> {
     let point =

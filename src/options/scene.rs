@@ -60,6 +60,17 @@ pub struct SceneArgs {
 }
 
 impl SceneArgs {
+    /// A lens or a look from a file, without lights of its own.
+    pub fn of(
+        scene: Option<PathBuf>,
+        preset: Option<String>,
+        lens: Option<PathBuf>,
+        unit: UnitArgs,
+        optics: OpticsArgs,
+    ) -> Self {
+        Self { scene, preset, lens, lights: None, add_lights: None, sources: None, axis: None, unit, optics }
+    }
+
     /// The files that the scene is read from, those among them that others refer to.
     pub fn files(&self) -> Vec<PathBuf> {
         let given = [&self.scene, &self.lens, &self.lights, &self.add_lights].into_iter().flatten();

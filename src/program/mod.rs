@@ -7,7 +7,7 @@ mod shell;
 use clap::error::{ContextKind, ContextValue};
 use clap::{Parser, Subcommand};
 
-use vglare::cli::{animate, apply, info, lights, plan, presets};
+use vglare::cli::{animate, apply, info, lights, plan, presets, remove};
 #[cfg(feature = "laboratory")]
 use vglare::laboratory::{bench, calibrate, harmonics, lens, psf, rex, tradeoff};
 #[cfg(feature = "window")]
@@ -39,6 +39,7 @@ Exit codes:
 #[derive(Debug, Subcommand)]
 enum Command {
     Apply(Box<apply::Args>),
+    Remove(Box<remove::Args>),
     Animate(Box<animate::Args>),
     #[cfg(feature = "window")]
     View(view::Args),
@@ -108,6 +109,7 @@ fn command(command: Command) -> Result<()> {
     }
     match command {
         Command::Apply(args) => apply::run(&args),
+        Command::Remove(args) => remove::run(&args),
         Command::Animate(args) => animate::run(&args),
         #[cfg(feature = "window")]
         Command::View(args) => view::run(&args),

@@ -34,7 +34,7 @@ pub use find::{FindOptions, Found, find, find_shining};
 pub use knee::{Knee, brightest};
 pub use lens::{Lens, LensVeil, ghosts};
 pub use optical::{NamedLens, Optical, OpticsSection, SENSOR, named_lens};
-pub use recover::{Recover, Recovered, Recovery, recover};
+pub use recover::{END as DISPLAY_WHITE, Recover, Recovered, Recovery, clipped, recover};
 pub(crate) use referred::referred;
 pub use sections::{AccuracySection, FindSection, Goal, LookSection, Version};
 pub use veil::{NO_VEIL, VeilFunction, VeilSection, absolute, check_fov};

@@ -18,6 +18,7 @@ mod preset_veils;
 mod real_lens;
 mod recover;
 mod refusals;
+mod remove;
 mod rex;
 mod scarce;
 mod sequence;

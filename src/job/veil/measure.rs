@@ -57,9 +57,32 @@ pub(super) fn measured(
     let largest = |plane: &Vec<f32>| f64::from(plane.par_iter().copied().reduce(|| 0.0, f32::max));
     let floors = computed.planes.each_ref().map(|plane| veil::FLOOR * largest(plane));
     let mut worst = 0.0f64;
+    let truths = by_definition(channels, sources, geometry, border, pixels, predicted)?;
+    for (&[x, y], truth) in pixels.iter().zip(truths) {
+        for channel in 0..3 {
+            let (value, truth) = (f64::from(computed.planes[channel][y * width + x]), truth[channel]);
+            let unit = truth.max(floors[channel]);
+            let error = if value == truth { 0.0 } else { (value - truth).abs() / unit };
+            // What 32-bit floats do not hold is no number here, and told apart elsewhere.
+            worst = if error.is_nan() { f64::INFINITY } else { worst.max(error) };
+        }
+    }
+    Ok(worst)
+}
+
+/// The veil at these pixels by its definition in 64-bit floats, each channel of its own; a kernel is looked up where errors from
+/// `predicted` on, relative to the veil, are told from it.
+pub(super) fn by_definition(
+    channels: &[Channel],
+    sources: &veil::Photo<'_>,
+    geometry: &Geometry,
+    border: Border,
+    pixels: &[[usize; 2]],
+    predicted: f64,
+) -> Result<Vec<[f64; 3]>> {
     let angles = geometry.angles(sources.size(), border);
-    for (index, (_, definition)) in channels.iter().enumerate() {
-        let truth = match definition {
+    let truth = |definition: &Definition| -> Result<_> {
+        Ok(match definition {
             Definition::Radial(kernel) if predicted < LOOKED_UP => {
                 veil::reference::at(sources, geometry, kernel, border, pixels)
             }
@@ -67,19 +90,16 @@ pub(super) fn measured(
                 veil::reference::at(sources, geometry, &looked_up(kernel, angles)?, border, pixels)
             }
             Definition::Picture(picture) => veil::reference::of_picture(sources, picture, border, pixels),
-        };
+        })
+    };
+    let mut all = vec![[0.0; 3]; pixels.len()];
+    for (index, (_, definition)) in channels.iter().enumerate() {
         let mine: &[usize] = if channels.len() == 1 { &[0, 1, 2] } else { &[index] };
-        for (&[x, y], truth) in pixels.iter().zip(truth) {
-            for &channel in mine {
-                let (value, truth) = (f64::from(computed.planes[channel][y * width + x]), truth[channel]);
-                let unit = truth.max(floors[channel]);
-                let error = if value == truth { 0.0 } else { (value - truth).abs() / unit };
-                // What 32-bit floats do not hold is no number here, and told apart elsewhere.
-                worst = if error.is_nan() { f64::INFINITY } else { worst.max(error) };
-            }
+        for (all, truth) in all.iter_mut().zip(truth(definition)?) {
+            mine.iter().for_each(|&channel| all[channel] = truth[channel]);
         }
     }
-    Ok(worst)
+    Ok(all)
 }
 
 /// A kernel by a table, for sums of millions: off by less than 1e-5, most of it far out in a Gaussian, but for the one place in a

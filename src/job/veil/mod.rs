@@ -5,6 +5,7 @@ mod layers;
 mod measure;
 mod planned;
 mod planning;
+mod removal;
 mod seat;
 mod summing;
 #[cfg(feature = "laboratory")]
@@ -33,6 +34,7 @@ pub use planned::{VeilPlanned, VeilSeen};
 #[cfg(feature = "laboratory")]
 pub(crate) use planning::plan_of;
 use planning::{Channel, Definition, Held};
+pub use removal::{Amplification, Clipped, Negative, Removal, RemovalError, Removed, Removing, remove};
 use seat::Seat;
 use summing::{Summed, computed, summed};
 #[cfg(feature = "laboratory")]

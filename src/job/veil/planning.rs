@@ -52,7 +52,7 @@ pub(super) struct Pixels<'a> {
 pub(super) struct Held {
     pub asked: f64,
     /// Whether the lowest that can be had will do.
-    least: bool,
+    pub least: bool,
 }
 
 impl Held {

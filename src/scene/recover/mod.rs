@@ -182,7 +182,7 @@ impl Recovered {
 }
 
 /// A channel of a picture for displays is clipped from here on: 0.995 of the largest code of sRGB, 254 of 255, in linear light.
-const END: f32 = 0.9887;
+pub const END: f32 = 0.9887;
 /// Between clipped pixels a code may be a little less: noise, and what JPEG makes of it.
 const NEARLY: f32 = 0.9 * END;
 /// In scene-linear light: this share of the largest luminance.
@@ -222,6 +222,19 @@ pub fn recover(pixels: &[[f32; 4]], frame: &Frame, emission: Emission, is_for_di
         mask.close(|pixel| emission.share(pixel) > 0.0 && scale.reach(pixel, emission) >= NEARLY, pixels);
     }
     Highlights::new(pixels, frame, emission, scale, mask).recovered(by)
+}
+
+/// Which pixels are clipped, row by row: those of which alpha leaves something, and the brightest channel reaches `level`; and of a
+/// picture for displays, whose level is [`END`], what is nearly there between them.
+pub fn clipped(pixels: &[[f32; 4]], width: usize, emission: Emission, level: f32) -> Vec<bool> {
+    let reaches = |pixel: &[f32; 4], level: f32| {
+        emission.share(pixel) > 0.0 && pixel[..3].iter().any(|channel| *channel >= level)
+    };
+    let mut mask = Mask::new(pixels, width, |pixel| reaches(pixel, level));
+    if level == END {
+        mask.close(|pixel| reaches(pixel, NEARLY), pixels);
+    }
+    mask.pixels
 }
 
 /// Where the scale ends.

@@ -1,0 +1,71 @@
+//! The report: what was taken away, how, how exactly and how fast.
+
+use serde::Serialize;
+
+use super::Args;
+use crate::job::{Clipped, Removal, Removed, Stages};
+use crate::photo::Facts;
+
+/// What there is to tell.
+pub struct Report<'a> {
+    pub args: &'a Args,
+    /// Of the photo.
+    pub facts: &'a Facts,
+    pub removed: &'a Removed,
+    pub stages: &'a Stages,
+}
+
+/// As JSON, one object.
+#[derive(Serialize)]
+pub struct Json<'a> {
+    vglare: &'static str,
+    input: PhotoJson<'a>,
+    output: Option<String>,
+    mask: Option<String>,
+    /// Nothing where there was no veil.
+    removal: Option<&'a Removal>,
+    clipped: Option<Clipped>,
+    warnings: &'a [String],
+    milliseconds: Vec<StageJson>,
+}
+
+#[derive(Serialize)]
+struct PhotoJson<'a> {
+    file: String,
+    format: &'static str,
+    depth: &'static str,
+    layer: Option<&'a str>,
+    picture: [u32; 2],
+    window: [i64; 4],
+}
+
+#[derive(Serialize)]
+struct StageJson {
+    stage: &'static str,
+    wall_ms: f64,
+}
+
+impl<'a> Report<'a> {
+    pub fn json(&self) -> Json<'a> {
+        let Self { args, facts: Facts { frame, format, depth, picture }, removed, stages } = *self;
+        let window = frame.window;
+        let shown = |path: &Option<std::path::PathBuf>| path.as_ref().map(|path| path.display().to_string());
+        Json {
+            vglare: env!("CARGO_PKG_VERSION"),
+            input: PhotoJson {
+                file: args.input.display().to_string(),
+                format,
+                depth,
+                layer: picture.as_deref(),
+                picture: [frame.width, frame.height],
+                window: [window.x.into(), window.y.into(), window.width.into(), window.height.into()],
+            },
+            output: shown(&args.output),
+            mask: shown(&args.mask),
+            removal: removed.removal.as_ref(),
+            clipped: removed.clipping,
+            warnings: &removed.warnings,
+            milliseconds: stages.0.iter().map(|&(stage, wall_ms)| StageJson { stage, wall_ms }).collect(),
+        }
+    }
+}
