@@ -10,12 +10,14 @@
 //! | [`lens`] | a real lens → its surfaces, its ghosts, and drawings of both |
 //! | [`harmonics`] | a photo → its spherical harmonic coefficients |
 //! | [`mod@bench`] | what each pass costs here, as ratios |
+//! | [`index`] | a look, or a photo of a chart → a veiling glare index |
 //! | [`calibrate`] | the cost model of plans, fitted to this machine |
 
 pub mod bench;
 pub mod calibrate;
 pub mod chart;
 pub mod harmonics;
+pub mod index;
 pub mod lens;
 mod page;
 pub mod psf;

@@ -9,7 +9,7 @@ use clap::{Parser, Subcommand};
 
 use vglare::cli::{animate, apply, info, lights, plan, presets, remove};
 #[cfg(feature = "laboratory")]
-use vglare::laboratory::{bench, calibrate, harmonics, lens, psf, rex, tradeoff};
+use vglare::laboratory::{bench, calibrate, harmonics, index, lens, psf, rex, tradeoff};
 #[cfg(feature = "window")]
 use vglare::viewer::command as view;
 use vglare::{Result, panics, terminal};
@@ -50,6 +50,8 @@ enum Command {
     Lens(Box<lens::Args>),
     #[cfg(feature = "laboratory")]
     Psf(Box<psf::Args>),
+    #[cfg(feature = "laboratory")]
+    Measure(Box<index::Args>),
     #[cfg(feature = "laboratory")]
     Harmonics(Box<harmonics::Args>),
     #[cfg(feature = "laboratory")]
@@ -120,6 +122,8 @@ fn command(command: Command) -> Result<()> {
         Command::Lens(args) => lens::run(&args),
         #[cfg(feature = "laboratory")]
         Command::Psf(args) => psf::run(&args),
+        #[cfg(feature = "laboratory")]
+        Command::Measure(args) => index::run(&args),
         #[cfg(feature = "laboratory")]
         Command::Harmonics(args) => harmonics::run(&args),
         #[cfg(feature = "laboratory")]

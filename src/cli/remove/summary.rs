@@ -42,8 +42,8 @@ fn about(out: &mut dyn Write, removal: &Removal) -> io::Result<()> {
     }
     let share = 100.0 * strength * scattered.iter().sum::<f64>() / 3.0;
     writeln!(out, ": scatters {share:.1} % of the light, by {}", text::summed(summed_by, *terms))?;
-    let noun = if *steps == 1 { "step" } else { "steps" };
-    write!(out, "removed  by {method}, {steps} {noun}, {veils} sums of the veil")?;
+    let plural = |count: usize| if count == 1 { "" } else { "s" };
+    write!(out, "removed  by {method}, {steps} step{}, {veils} sum{} of the veil", plural(*steps), plural(*veils))?;
     let contraction = removal.contraction.into_iter().fold(0.0, f64::max);
     writeln!(out, "; a step of the series leaves at most {contraction:.3} of what was left")?;
     let Amplification { largest, rms } = removal.amplification;

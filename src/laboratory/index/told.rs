@@ -1,0 +1,142 @@
+//! What is printed.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use comfy_table::{CellAlignment, Table, presets};
+use serde::Serialize;
+
+use super::Index;
+use super::field::{Field, Place, RING};
+use super::spots::Spot;
+use crate::Result;
+use crate::look::{Look, LookLens};
+use crate::photo::Photo;
+use crate::terminal::stdout;
+
+/// What was measured of a look.
+pub struct Told<'a> {
+    pub look: &'a Look,
+    pub field: &'a Field,
+    /// Degrees across the picture.
+    pub fov: f64,
+    pub places: &'a [Place],
+    /// Rising.
+    pub diameters: &'a [f64],
+    /// Of each diameter, all places.
+    pub all: &'a [Index],
+}
+
+#[derive(Serialize)]
+struct Json<'a> {
+    vglare: &'static str,
+    lens: String,
+    veil: Option<String>,
+    f_number: Option<f64>,
+    strength: f64,
+    picture: [u32; 2],
+    fov: f64,
+    ring_diameters: f64,
+    spots: &'a [Index],
+}
+
+/// Rec. 709's weights of luminance.
+pub fn luminance([r, g, b]: [f64; 3]) -> f64 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
+impl Told<'_> {
+    /// The look, in a few words.
+    pub fn name(&self) -> String {
+        let veil = self.veil().map_or(String::new(), |veil| format!(", veil {veil}"));
+        let stop = self.f_number().map_or(String::new(), |number| format!(" at f/{number:.1}"));
+        format!("{}{stop}{veil}", self.lens())
+    }
+
+    fn lens(&self) -> String {
+        if self.look.lens_ghosts().is_empty() { "no ghosts".to_owned() } else { self.look.lens().name.clone() }
+    }
+
+    fn veil(&self) -> Option<String> {
+        self.look.veil.as_ref().map(|veil| veil.psf().name().to_string())
+    }
+
+    fn f_number(&self) -> Option<f64> {
+        if let LookLens::Optical(optical) = &self.look.lens { Some(optical.f_number()) } else { None }
+    }
+
+    /// As JSON, one object.
+    pub fn json(&self) -> Result<()> {
+        let json = Json {
+            vglare: env!("CARGO_PKG_VERSION"),
+            lens: self.lens(),
+            veil: self.veil(),
+            f_number: self.f_number(),
+            strength: self.look.strength,
+            picture: self.field.size,
+            fov: self.fov,
+            ring_diameters: RING,
+            spots: self.all,
+        };
+        print(&json)
+    }
+
+    /// A row for each place, a column for each diameter.
+    pub fn table(&self, out: &mut dyn Write) -> io::Result<()> {
+        let [width, height] = self.field.size;
+        writeln!(out, "{}: {:.1}° across {width} × {height} pixels, every pixel a source", self.name(), self.fov)?;
+        let mut table = Table::new();
+        table.load_style(presets::NOTHING);
+        let spots = self.diameters.iter().map(|diameter| format!("{diameter}° spot, %"));
+        table.set_header(["place".to_owned(), "off axis".to_owned()].into_iter().chain(spots));
+        for (number, place) in self.places.iter().enumerate() {
+            let of = self.all.iter().skip(number).step_by(self.places.len());
+            let cells = of.map(|Index { index, bound, .. }| {
+                format!("{:.3} ± {:.3}", 100.0 * luminance(*index), 100.0 * luminance(*bound))
+            });
+            let off = format!("{:.1}°", self.field.off_axis(place.pixel));
+            table.add_row([place.name.to_owned(), off].into_iter().chain(cells));
+        }
+        table.column_iter_mut().skip(1).for_each(|column| column.set_cell_alignment(CellAlignment::Right));
+        writeln!(out, "{}", table.trim_fmt())?;
+        writeln!(
+            out,
+            "The luminance of a spot's centre over that of the field {RING} diameters from it; in the manner of ISO 9358."
+        )
+    }
+}
+
+#[derive(Serialize)]
+struct PhotoJson<'a> {
+    vglare: &'static str,
+    photo: String,
+    spots: &'a [Spot],
+}
+
+/// What was measured in a photo.
+pub fn spots(as_json: bool, path: &Path, photo: &Photo, spots: &[Spot]) -> Result<()> {
+    if as_json {
+        return print(&PhotoJson { vglare: env!("CARGO_PKG_VERSION"), photo: path.display().to_string(), spots });
+    }
+    stdout::print(|out| {
+        writeln!(out, "{}: {} x {}, {}", path.display(), photo.width(), photo.height(), photo.format_name())?;
+        let mut table = Table::new();
+        table.load_style(presets::NOTHING);
+        table.set_header(["column", "row", "diameter", "red, %", "green, %", "blue, %", "pixels"]);
+        for Spot { centre: [x, y], diameter, index, standard_error, pixels: [spot, ring] } in spots {
+            let cell = |c: usize| format!("{:.3} ± {:.3}", 100.0 * index[c], 100.0 * standard_error[c]);
+            let [red, green, blue] = [0, 1, 2].map(cell);
+            let pixels = format!("{spot} and {ring}");
+            table.add_row([x.to_string(), y.to_string(), diameter.to_string(), red, green, blue, pixels]);
+        }
+        table.column_iter_mut().for_each(|column| column.set_cell_alignment(CellAlignment::Right));
+        writeln!(out, "{}", table.trim_fmt())
+    })
+}
+
+fn print(value: &impl Serialize) -> Result<()> {
+    stdout::json(|out| {
+        serde_json::to_writer_pretty(&mut *out, value)?;
+        writeln!(out)
+    })
+}
