@@ -65,6 +65,9 @@ pub struct Removed {
 /// What a pixel takes beside the veil's sums: some fields of three samples.
 const BYTES: u64 = 120;
 
+/// Pixels of a picture whose veil on the sphere is planned to any tolerance in no time.
+const SMALL: usize = 1 << 14;
+
 /// The veils' tolerances that an answer's asks for, relative to themselves: of the first sum, and of those that follow.
 ///
 /// `scattered` is the largest share that a pixel loses, and `adds` says that it keeps it all the same; `tightest` is what can be had.
@@ -104,8 +107,9 @@ pub fn remove(look: &Look, mut photo: Photo, removing: Removing, stages: &mut St
     }
     limits::room(BYTES * photo.pixels.len() as u64, "taking a veil away")?;
     let asked = removing.tolerance;
-    // What is tighter takes long to find out that it cannot be had.
-    let tightest = if matches!(seat.geometry, veil::Geometry::Planar { .. }) { 1e-7 } else { 1e-3 };
+    // On the sphere of a large picture what is tighter takes long to find out that it cannot be had.
+    let is_planar = matches!(seat.geometry, veil::Geometry::Planar { .. });
+    let tightest = if is_planar || photo.pixels.len() <= SMALL { 1e-7 } else { 1e-3 };
     let tolerances = tolerances(asked, scattered, wanted.adds, tightest);
     let mut operator = stages.time("veil plan", || {
         Operator::new(wanted, seat, look.strength, &photo.pixels, Emission::of(&photo), tolerances)
