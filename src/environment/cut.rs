@@ -6,7 +6,7 @@ use super::sight::{Rectangle, Sight};
 use super::tree::{Cell, Place, Tree};
 
 /// Parts along each side of a finest cell at the band's edge.
-const PARTS: usize = 4;
+const PARTS: usize = 10;
 
 /// A cell that a hood cuts is no larger than this, by its radius: a part of the ten degrees that the cut takes.
 const FINE: f64 = 0.025;

@@ -47,11 +47,13 @@ pub(super) fn at(photo: &Photo, sight: &Sight, psf: &Psf, directions: &[DVec3]) 
                     let (across, down) = (column as f64 + offset(part % parts), row as f64 + offset(part / parts));
                     let from = if parts == 1 { centre } else { grid.direction(across, down) };
                     let seen = sight.seen(from);
-                    if parts == EDGED && shown.inside(seen) > 0.0 {
+                    // Of a part that the edge crosses what lies beyond it.
+                    let outside = if parts == EDGED { 1.0 - shown.share(seen, 0.5 * side / EDGED as f64) } else { 1.0 };
+                    if outside == 0.0 {
                         continue;
                     }
                     let angle = 2.0 * (0.5 * from.distance(*direction)).min(1.0).asin();
-                    weight += sight.accepts(seen.z) * psf.value(angle.to_degrees());
+                    weight += outside * sight.accepts(seen.z) * psf.value(angle.to_degrees());
                 }
                 weight *= area / (parts * parts) as f64;
                 (0..3).for_each(|k| sum[k] += weight * light[k]);

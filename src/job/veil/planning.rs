@@ -139,7 +139,8 @@ fn channels(psf: &Psf, pixels: Pixels, tolerance: f64) -> Result<Vec<Channel>, R
     }
     let plan = |kernel: Kernel| {
         let Mixture { terms, constant, quadratic } = kernel.mixture();
-        let plan = if terms.is_empty() && *constant == 0.0 && *quadratic == 0.0 {
+        let has_no_mixture = terms.is_empty() && *constant == 0.0 && *quadratic == 0.0;
+        let plan = if has_no_mixture && matches!(geometry, Geometry::Planar { .. }) {
             Plan::for_profile(geometry, |distance| kernel.at(distance), size, border, tolerance)
         } else {
             Plan::new(geometry, &kernel, size, border, tolerance)

@@ -104,7 +104,7 @@ impl Parts<'_> {
         let across = 2.0 * least * (0.5 * phi[0].min(PI)).sin().max(0.0);
         let distance = beside.hypot(across);
         let (nodes, far): (&[[f64; 2]], f64) = match self.fineness {
-            Fineness::Usual => (&THREE, 1.0),
+            Fineness::Usual => (&THREE, 0.7),
             Fineness::Finer => (&FOUR, 0.6),
         };
         if size <= far * distance || size <= LEAST {

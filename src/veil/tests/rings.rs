@@ -110,23 +110,35 @@ fn a_point_at_a_pole_or_at_the_seam_has_a_round_veil() {
     }
 }
 
-/// Between any two points up to 60° apart, at poles, across the seam and elsewhere, a small source sends what the function says.
+/// Between any two points up to 60° apart, at poles, across the seam and elsewhere, a small source sends what the function says, from all
+/// over its pixel: next to a pole its middle is not the middle of its light.
 #[test]
 fn far_from_a_source_it_is_the_function() {
     let (size, kernel) = ([256, 128], eye());
     let plan = planned(&kernel, size);
-    let direction = |[x, y]: [usize; 2]| {
-        let (theta, phi) = (PI * (y as f64 + 0.5) / 128.0, 2.0 * PI * (x as f64 + 0.5) / 256.0);
+    let direction = |[x, y]: [f64; 2]| {
+        let (theta, phi) = (PI * y / 128.0, 2.0 * PI * x / 256.0);
         [theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos()]
     };
+    let middle = |pixel: [usize; 2]| direction(pixel.map(|k| k as f64 + 0.5));
+    let apart = |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| a[k] * b[k]).sum::<f64>().min(1.0).acos().to_degrees();
     for source in [[0, 64], [17, 1], [255, 30], [100, 127]] {
         let seen = veil(&plan, &photo(size, |column, row| if [column, row] == source { 1.0 } else { 0.0 }));
+        // Parts of the source, and what of its area they are.
+        const PARTS: usize = 6;
+        let offset = |k: usize| (k as f64 + 0.5) / PARTS as f64;
+        let places =
+            (0..PARTS * PARTS).map(|k| [source[0] as f64 + offset(k % PARTS), source[1] as f64 + offset(k / PARTS)]);
+        let parts: Vec<([f64; 3], f64)> =
+            places.map(|place| (direction(place), (PI * place[1] / 128.0).sin())).collect();
+        let whole: f64 = parts.iter().map(|(_, area)| area).sum();
         let area = Geometry::Equirectangular.solid_angle(size, source);
         for (at, value) in seen.iter().enumerate() {
-            let [a, b] = [source, [at % 256, at / 256]].map(direction);
-            let angle = (0..3).map(|k| a[k] * b[k]).sum::<f64>().min(1.0).acos().to_degrees();
+            let to = middle([at % 256, at / 256]);
+            let angle = apart(middle(source), to);
             if (15.0..60.0).contains(&angle) {
-                let wanted = area * kernel.at(angle);
+                let sent: f64 = parts.iter().map(|(from, area)| area * kernel.at(apart(*from, to))).sum();
+                let wanted = area * sent / whole;
                 assert!((f64::from(*value) / wanted - 1.0).abs() < 0.01, "{source:?} at {angle}: {value} for {wanted}");
             }
         }
