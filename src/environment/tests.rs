@@ -61,7 +61,8 @@ fn a_field_is_the_sum_over_all_pixels_outside() {
             let outside = environment.outside(sight, Some(plan));
             let error = outside.measured(&outside.veil().unwrap());
             assert!(error.measured <= error.predicted, "{camera:?}: {error:?}");
-            assert!(error.predicted <= 1.5 * tolerance, "{camera:?}: {error:?}");
+            // The panorama's own pixels, coarse beside these views, are the finest cells.
+            assert!(error.predicted <= 2.0 * tolerance, "{camera:?}: {error:?}");
         }
     }
 }
