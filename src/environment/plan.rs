@@ -179,7 +179,7 @@ fn off(axes: &[Axis; 2], sight: &Sight, begins: &Rectangle, scatter: &Tabled) ->
     let [right, top] = begins.edges();
     let light = |k: usize| {
         let along = (k / 2) as f64 / (LIGHTS - 1) as f64;
-        sight.direction(if k % 2 == 0 { [right, along * top] } else { [along * right, top] })
+        sight.direction(if k.is_multiple_of(2) { [right, along * top] } else { [along * right, top] })
     };
     let [across, down] = axes.each_ref().map(Axis::middles);
     let directions = |xs: &[f64], ys: &[f64]| -> Vec<DVec3> {

@@ -167,9 +167,9 @@ impl FrameTold {
 /// What a camera sees of a place.
 pub enum View<'a> {
     /// With what it does not see.
-    Lit(Seen<'a>),
+    Lit(Box<Seen<'a>>),
     /// By itself, with its field of view.
-    Dark(Photo, f64),
+    Dark(Box<Photo>, f64),
 }
 
 /// What a camera sees, with its glare: all of a frame is new.
@@ -179,8 +179,8 @@ pub enum View<'a> {
 pub fn seen(maker: &mut Maker<'_>, view: View<'_>) -> Result<Drawn> {
     let wanted = maker.wanted();
     let (look, photo, lit) = match view {
-        View::Dark(photo, fov) => (Look { fov: Some(fov), ..maker.look.clone() }, photo, None),
-        View::Lit(mut seen) => (seen.look(maker.look)?, seen.take(), Some(seen)),
+        View::Dark(photo, fov) => (Look { fov: Some(fov), ..maker.look.clone() }, *photo, None),
+        View::Lit(mut seen) => (seen.look(maker.look)?, seen.take(), Some(*seen)),
     };
     let (Photos { mut picture, mut glare }, told, warnings) = maker.compute(&look, 1.0, photo, wanted)?;
     let outside = lit.map(|seen| seen.lay(&look, picture.as_mut(), glare.as_mut()));

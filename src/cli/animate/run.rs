@@ -108,9 +108,9 @@ fn of_camera<'a>(
         ));
     }
     let place = if lit {
-        Place::Lit(Surroundings::read(path, &args.reading.options(), args.hood, look)?)
+        Place::Lit(Surroundings::read(path, &args.reading.options(), args.hood, look)?.into())
     } else {
-        Place::Dark(panorama(args, path)?)
+        Place::Dark(panorama(args, path)?.into())
     };
     let (sides, overscan) = (args.sides(), args.reading.options().overscan);
     let beyond = sides.map(|side| (f64::from(side) * overscan).round() as u32);
@@ -124,8 +124,10 @@ fn of_camera<'a>(
     let view = |index: usize| {
         let (camera, fov) = camera(index);
         match &place {
-            Place::Lit(surroundings) => surroundings.seen(&camera, fov, sides, beyond, None).map(View::Lit),
-            Place::Dark(panorama) => Ok(View::Dark(panorama.view(&camera, fov, sides, beyond), fov)),
+            Place::Lit(surroundings) => {
+                surroundings.seen(&camera, fov, sides, beyond, None).map(|seen| View::Lit(seen.into()))
+            }
+            Place::Dark(panorama) => Ok(View::Dark(panorama.view(&camera, fov, sides, beyond).into(), fov)),
         }
     };
     let prepare = || Maker::new(args, look);
@@ -136,8 +138,8 @@ fn of_camera<'a>(
 
 /// Where a camera is.
 enum Place {
-    Lit(Surroundings),
-    Dark(Panorama),
+    Lit(Box<Surroundings>),
+    Dark(Box<Panorama>),
 }
 
 fn panorama(args: &Args, path: &Path) -> Result<Panorama> {

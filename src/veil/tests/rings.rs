@@ -54,9 +54,8 @@ fn it_is_the_sum_over_all_pixels() {
             [[0, 0], [63, 0], [20, 31], [5, 9], [6, 9], [37, 9], [0, 15], [63, 16], [32, 2]].to_vec();
         let truth = reference::at(&photo, &Geometry::Equirectangular, &kernel, Border::None, &places);
         for ([x, y], truth) in places.into_iter().zip(truth) {
-            for channel in 0..2 {
-                let found = f64::from(computed.planes[channel][y * SIZE[0] + x]);
-                let error = (found / truth[channel] - 1.0).abs();
+            for (plane, truth) in computed.planes.iter().zip(truth).take(2) {
+                let error = (f64::from(plane[y * SIZE[0] + x]) / truth - 1.0).abs();
                 assert!(error <= plan.predicted().bound, "{x}, {y}: {error:e} of {:e}", plan.predicted().bound);
             }
         }

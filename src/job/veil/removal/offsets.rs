@@ -43,10 +43,10 @@ impl Offsets {
         let mut values = vec![0.0f64; width * height];
         let row = |(y, values): (usize, &mut [f64])| {
             let (mut misfit, mut largest) = (0.0, 0.0f64);
-            for x in usize::from(y == 0)..width {
+            for (x, of_offset) in values.iter_mut().enumerate().skip(usize::from(y == 0)) {
                 let distance = pitch * (x as f64).hypot(y as f64);
                 let value = kernel.at(distance);
-                values[x] = unit * value;
+                *of_offset = unit * value;
                 largest = largest.max(unit * value);
                 if positive {
                     // As often as there are signs.
@@ -59,7 +59,8 @@ impl Offsets {
         let rows: Vec<_> = values.par_chunks_exact_mut(width).enumerate().map(row).collect();
         let [misfit, largest] = rows.into_iter().fold([0.0, 0.0], |all, row| [all[0] + row[0], row[1].max(all[1])]);
         let of_mixture = positive.then(|| unit * mixture.at(0.0) + misfit);
-        let times = |at: usize| f64::from(1 + u8::from(at % width > 0)) * f64::from(1 + u8::from(at >= width));
+        let times =
+            |at: usize| f64::from(1 + u8::from(!at.is_multiple_of(width))) * f64::from(1 + u8::from(at >= width));
         let ranked = Ranked::new(values.iter().enumerate().skip(1).map(|(at, value)| [*value, times(at)]), largest);
         Self { sums: sums(values, [width, height]), largest, ranked: ranked.into(), of_mixture }
     }
