@@ -29,7 +29,7 @@ const BETWEEN: f64 = 0.5;
 
 /// The opening of cells, by the root of the tolerance, and the widest that there is: what sums are off by goes with its square.
 const OPENING: f64 = 1.2;
-const WIDEST_OPENING: f64 = 0.3;
+const WIDEST_OPENING: f64 = 0.15;
 
 /// Cells that zones share, by their radius, over the zone's distance.
 const SHARED: f64 = 0.1;
