@@ -70,10 +70,6 @@ fn goal(ui: &mut Ui, document: &mut Document) {
     };
     let about = "Where the tolerance cannot be had, take the lowest that can.";
     flag(ui, "Allow floor", about, &mut document.look.accuracy.allow_floor, opened.allow_floor);
-    if let Goal::Tolerance(_) = document.look.accuracy.goal {
-        let about = "Holds the error at each pixel to the tolerance of photo and glare there, too.";
-        flag(ui, "Each pixel", about, &mut document.look.accuracy.each_pixel, opened.each_pixel);
-    }
 }
 
 /// The error that was measured, and where it may be looked at.

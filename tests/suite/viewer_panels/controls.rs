@@ -62,7 +62,7 @@ fn changed(session: &mut Session) -> (Look, Viewing) {
     look.accuracy = Accuracy {
         goal: Goal::Tolerance(1e-2),
         allow_floor: true,
-        each_pixel: true,
+        each_pixel: false,
         degree: Some([20, 21]),
         period: Some(DVec2::new(7.0, 6.0)),
         evaluator: Some(Evaluator::Rows),
