@@ -62,7 +62,8 @@ impl Field {
             let [across, down] = &layer.axes;
             let places = down.nodes.iter().flat_map(|&y| across.nodes.iter().map(move |&x| [x, y]));
             let directions: Vec<DVec3> = places.map(|place| sight.direction(place)).collect();
-            let own = sum.at(&directions).into_iter().map(|[r, g, b]| [r as f32, g as f32, b as f32, 0.0]);
+            let veils = sum.at(&plan.summed, &directions, across.nodes.len());
+            let own = veils.into_iter().map(|[r, g, b]| [r as f32, g as f32, b as f32, 0.0]);
             let mut all: Vec<[f32; 4]> = own.collect();
             if let Some(farther) = plan.layers.get(index + 1) {
                 let farther = spread(&nodes, &farther.axes);
@@ -173,7 +174,12 @@ impl Field {
                 measured = if error <= measured { measured } else { error };
             }
         }
-        StrayError { asked: plan.tolerance, predicted: predicted + plan.between, measured, pixels: pixels.len() }
+        StrayError {
+            asked: plan.tolerance,
+            predicted: predicted + plan.between + plan.summed.rounding(),
+            measured,
+            pixels: pixels.len(),
+        }
     }
 }
 

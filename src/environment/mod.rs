@@ -21,15 +21,19 @@
 //! | `sight` | what a camera sees, what its hood accepts of the rest |
 //! | `tree` | a panorama → cells of light |
 //! | `cut` | what of the cells lies outside of a sight |
+//! | `clip` | what of a pixel at its edge does |
 //! | `sum` | cells → their veil in a direction, with its bound |
+//! | `lanes` | the same in a tile of directions at once |
 //! | `plan` | in which directions of a picture that is, and what goes between them |
 //! | `field` | the veil of a whole picture |
 //! | `lamps` | what is bright and small in a panorama, as lights beside a picture |
 //! | `reference` | the veil by definition |
 
+mod clip;
 mod cut;
 mod field;
 mod lamps;
+mod lanes;
 mod plan;
 mod reference;
 mod sight;
@@ -47,7 +51,7 @@ use crate::frame::Frame;
 use crate::motion::Panorama;
 use crate::scene::{FindOptions, Light};
 
-use cut::{Cut, Zone};
+use cut::{Cut, Whole, Zone};
 pub use field::{Field, StrayError};
 use lamps::Lamp;
 pub use plan::StrayPlan;
@@ -85,10 +89,11 @@ impl Environment {
     /// What a camera does not see: as much work as there are cells at the edge of its picture. `plan` says how its veil is summed, where
     /// that is wanted.
     pub fn outside(&self, sight: Sight, plan: Option<Arc<StrayPlan>>) -> Outside<'_> {
-        let all = Zone { shown: sight.shown(), inner: None, outer: None, shares: 0.0 };
+        let all = Zone { shown: sight.shown(), inner: None, outer: None };
         let zones =
             plan.as_ref().map_or_else(|| vec![all], |plan| plan.layers.iter().map(|layer| layer.zone).collect());
-        let cuts = zones.par_iter().map(|zone| Cut::new(&self.tree, &sight, zone)).collect();
+        let whole = Whole { photo: self.panorama.photo(), tree: &self.tree };
+        let cuts = zones.par_iter().map(|zone| Cut::new(whole, &sight, zone)).collect();
         Outside { environment: self, sight, plan, cuts }
     }
 }

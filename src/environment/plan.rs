@@ -8,7 +8,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::cut::Zone;
+use super::cut::{Border, Zone};
+use super::lanes::Summed;
 use super::sight::{Rectangle, Sight};
 use crate::psf::Psf;
 use crate::veil::Tabled;
@@ -21,8 +22,11 @@ const ZONES: usize = 3;
 const FARTHER: f64 = 4.0;
 
 /// Steps between directions that are tried, over the zone's distance, from the widest.
-const WIDEST: f64 = 0.6;
+const WIDEST: f64 = 0.8;
 const NARROWEST: f64 = 0.08;
+
+/// The first steps from either end, over those between: what goes between nodes is worst where they lie to one side.
+const FIRST: [f64; 2] = [0.5, 0.7];
 
 /// Of a tolerance, what is left to what goes between nodes.
 const BETWEEN: f64 = 0.5;
@@ -38,6 +42,7 @@ const SHARED: f64 = 0.1;
 pub struct StrayPlan {
     pub(super) psf: Psf,
     pub(super) scatter: Tabled,
+    pub(super) summed: Summed,
     pub(super) sides: [u32; 2],
     edges: [[f64; 2]; 2],
     /// The nearest first.
@@ -57,7 +62,7 @@ pub(super) struct Layer {
 
 /// Nodes along one side of a picture, and what each of some places has of them.
 pub(super) struct Axis {
-    /// Evenly, over the focal length, from the left, or the lower end, on.
+    /// Over the focal length, from the left, or the lower end, on.
     pub nodes: Vec<f64>,
     /// The first node, and how much of it and the next ones.
     pub weights: Vec<(usize, [f32; NODES])>,
@@ -72,7 +77,12 @@ impl StrayPlan {
         // How far beyond the pixels each zone begins.
         let distance = (edges[0][1] - edges[0][0]).min(edges[1][1] - edges[1][0]);
         let distances: [f64; ZONES] = std::array::from_fn(|zone| distance * FARTHER.powi(zone as i32));
-        let begins = distances.map(|distance| Rectangle::new(edges.map(|[last, _]| last + distance)));
+        // By the chord, which is less the farther from the middle.
+        let begins = distances.map(|distance| {
+            let rectangle = Rectangle::new(edges.map(|[last, _]| last + distance));
+            let [x, y] = rectangle.edges();
+            Border { rectangle, shares: SHARED * distance / (1.0 + x * x + y * y) }
+        });
         // Cells that it shares with the one before are a little nearer.
         let nearest = distances.map(|distance| (1.0 - 1.5 * SHARED) * distance);
         let nearest = nearest.map(|distance| Rectangle::new(edges.map(|[last, _]| last + distance)));
@@ -80,14 +90,7 @@ impl StrayPlan {
         let mut layers: Vec<Layer> = Vec::new();
         for (zone, distance) in distances.into_iter().enumerate() {
             let inner = (zone > 0).then(|| begins[zone]);
-            // By the chord, which is less the farther from the middle.
-            let [x, y] = begins[zone].edges();
-            let ends = Zone {
-                shown,
-                inner,
-                outer: begins.get(zone + 1).copied(),
-                shares: SHARED * distance / (1.0 + x * x + y * y),
-            };
+            let ends = Zone { shown, inner, outer: begins.get(zone + 1).copied() };
             let places = match layers.last() {
                 None => [0, 1].map(|side| places(edges[side][0], sides[side])),
                 Some(Layer { axes, .. }) => axes.each_ref().map(|axis| axis.nodes.clone()),
@@ -102,7 +105,8 @@ impl StrayPlan {
         };
         let between = (0..ZONES).map(passes).fold(0.0, f64::max);
         let opening = (OPENING * tolerance.sqrt()).min(WIDEST_OPENING);
-        Self { psf: psf.clone(), scatter, sides, edges, layers, tolerance, opening, between }
+        let summed = Summed::new(&scatter, tolerance);
+        Self { psf: psf.clone(), scatter, summed, sides, edges, layers, tolerance, opening, between }
     }
 
     /// Whether it is the plan for these.
@@ -142,30 +146,37 @@ fn fine_enough(places: &[Vec<f64>; 2], distance: f64, tolerance: f64, off: impl 
 impl Axis {
     /// For places from -x to x, at most a step apart.
     fn new(places: &[f64], step: f64) -> Self {
-        let end = places.last().map_or(0.0, |end| end.abs());
-        let steps = ((2.0 * end / step).ceil() as usize).max(NODES - 1);
-        let step = (2.0 * end / steps as f64).max(f64::MIN_POSITIVE);
-        let nodes = (0..=steps).map(|k| k as f64 * step - end).collect();
-        let weights = places.iter().map(|place| weights((place + end) / step, steps)).collect();
+        let end = places.last().map_or(0.0, |end| end.abs()).max(f64::MIN_POSITIVE);
+        let few = 2 * FIRST.len() + 1;
+        let ends: f64 = 2.0 * FIRST.iter().sum::<f64>();
+        let between = (2.0 * end / step - ends).ceil().max((NODES - few) as f64) as usize;
+        let steps = FIRST.into_iter().chain((0..between).map(|_| 1.0)).chain(FIRST.into_iter().rev());
+        let unit = 2.0 * end / (ends + between as f64);
+        let mut nodes = vec![-end];
+        nodes.extend(steps.scan(-end, |node, step| {
+            *node += step * unit;
+            Some(*node)
+        }));
+        let weights = places.iter().map(|place| weights(*place, &nodes)).collect();
         Self { nodes, weights }
     }
 
     /// Places half way between nodes, with the weights of the nodes about them.
     fn middles(&self) -> (Vec<f64>, Vec<(usize, [f32; NODES])>) {
-        let steps = self.nodes.len() - 1;
-        let place = |k: usize| 0.5 * (self.nodes[k] + self.nodes[k + 1]);
-        ((0..steps).map(place).collect(), (0..steps).map(|k| weights(k as f64 + 0.5, steps)).collect())
+        let middles: Vec<f64> = self.nodes.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
+        let weights = middles.iter().map(|middle| weights(*middle, &self.nodes)).collect();
+        (middles, weights)
     }
 }
 
-/// The first of the nodes about a place, which is counted in steps from the first of all, and the weight of each.
-fn weights(place: f64, steps: usize) -> (usize, [f32; NODES]) {
-    let place = if place.is_finite() { place.clamp(0.0, steps as f64) } else { 0.0 };
-    let first = (place as usize).saturating_sub(NODES / 2 - 1).min(steps + 1 - NODES);
-    let at = place - first as f64;
+/// The first of the nodes about a place, and the weight of each: those of Lagrange's polynomials.
+fn weights(place: f64, nodes: &[f64]) -> (usize, [f32; NODES]) {
+    let after = nodes.partition_point(|node| *node <= place);
+    let first = after.saturating_sub(NODES / 2).min(nodes.len() - NODES);
+    let about = &nodes[first..first + NODES];
     let weight = |k: usize| {
-        let others = (0..NODES).filter(|&other| other != k);
-        others.map(|other| (at - other as f64) / (k as f64 - other as f64)).product::<f64>() as f32
+        let others = about.iter().enumerate().filter(|(other, _)| *other != k);
+        others.map(|(_, other)| (place - other) / (about[k] - other)).product::<f64>() as f32
     };
     (first, std::array::from_fn(weight))
 }

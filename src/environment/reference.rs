@@ -5,13 +5,14 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::cut::divided;
 use super::sight::Sight;
 use crate::photo::Photo;
 use crate::psf::Psf;
 use crate::series::sphere::Grid;
 
-/// A pixel that the band's edge crosses is taken by so many parts along each side; one that does not by as many as its distance asks
-/// for.
+/// A pixel that the band's edge crosses is taken by so many parts along each side, and what of each lies beyond; one that does not by as
+/// many as its distance asks for.
 const EDGED: usize = 16;
 const MOST: usize = 12;
 
@@ -36,27 +37,28 @@ pub(super) fn at(photo: &Photo, sight: &Sight, psf: &Psf, directions: &[DVec3]) 
             if nearest > side {
                 continue;
             }
+            let value = |from: DVec3, direction: &DVec3| {
+                let angle = 2.0 * (0.5 * from.distance(*direction)).min(1.0).asin();
+                sight.accepts(sight.seen(from).z) * psf.value(angle.to_degrees())
+            };
+            let edged = (nearest > -side).then(|| divided(grid, [column, row], EDGED, sight, &shown));
             for (sum, direction) in sums.iter_mut().zip(directions) {
-                let parts = match nearest > -side {
-                    true => EDGED,
-                    false => ((NEAR * side / centre.distance(*direction)).ceil() as usize).clamp(1, MOST),
-                };
-                let mut weight = 0.0;
-                for part in 0..parts * parts {
-                    let offset = |k: usize| (k as f64 + 0.5) / parts as f64 - 0.5;
-                    let (across, down) = (column as f64 + offset(part % parts), row as f64 + offset(part / parts));
-                    let from = if parts == 1 { centre } else { grid.direction(across, down) };
-                    let seen = sight.seen(from);
-                    // Of a part that the edge crosses what lies beyond it.
-                    let outside = if parts == EDGED { 1.0 - shown.share(seen, 0.5 * side / EDGED as f64) } else { 1.0 };
-                    if outside == 0.0 {
-                        continue;
+                let weight = match &edged {
+                    Some(parts) => parts.iter().map(|part| part.share * value(part.middle, direction)).sum::<f64>(),
+                    None => {
+                        let parts = ((NEAR * side / centre.distance(*direction)).ceil() as usize).clamp(1, MOST);
+                        let offset = |k: usize| (k as f64 + 0.5) / parts as f64 - 0.5;
+                        let part = |k: usize| {
+                            if parts == 1 {
+                                return centre;
+                            }
+                            grid.direction(column as f64 + offset(k % parts), row as f64 + offset(k / parts))
+                        };
+                        let all = (0..parts * parts).map(|k| value(part(k), direction)).sum::<f64>();
+                        all / (parts * parts) as f64
                     }
-                    let angle = 2.0 * (0.5 * from.distance(*direction)).min(1.0).asin();
-                    weight += outside * sight.accepts(seen.z) * psf.value(angle.to_degrees());
-                }
-                weight *= area / (parts * parts) as f64;
-                (0..3).for_each(|k| sum[k] += weight * light[k]);
+                };
+                (0..3).for_each(|k| sum[k] += area * weight * light[k]);
             }
         }
         sums

@@ -51,6 +51,12 @@ impl Rectangle {
         self.edges
     }
 
+    /// Vectors whose product with a direction, as the camera has it, is below 0 where that lies outside: left, right, below, above.
+    pub fn normals(&self) -> [DVec3; 4] {
+        let [x, y] = self.edges;
+        [DVec3::new(1.0, 0.0, x), DVec3::new(-1.0, 0.0, x), DVec3::new(0.0, 1.0, y), DVec3::new(0.0, -1.0, y)]
+    }
+
     /// How far inside its edges a direction, as the camera has it, lies: the sine of the angle to the nearest one, below 0 outside.
     pub fn inside(&self, seen: DVec3) -> f64 {
         let [x, y] = self.sides(seen);
@@ -122,6 +128,11 @@ impl Sight {
     /// A direction as the camera has it: to the right, up, ahead.
     pub(super) fn seen(&self, direction: DVec3) -> DVec3 {
         DVec3::from(self.axes.map(|axis| axis.dot(direction)))
+    }
+
+    /// The direction of what the camera has to the right, up, ahead.
+    pub(super) fn unseen(&self, seen: DVec3) -> DVec3 {
+        seen.x * self.axes[0] + seen.y * self.axes[1] + seen.z * self.axes[2]
     }
 
     /// The unit vector towards a place right of and above the middle, over the focal length.

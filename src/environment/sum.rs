@@ -10,9 +10,11 @@
 //! nothing and twice that.
 
 use glam::DVec3;
+use pulp::Arch;
 use rayon::prelude::*;
 
 use super::cut::{Cut, Kept};
+use super::lanes::{Real, Summed, TILE, Table, Tile};
 use super::tree::{Cell, Tree};
 use crate::veil::Tabled;
 
@@ -25,27 +27,47 @@ pub(super) struct Sum<'a> {
     pub opening: f64,
 }
 
-/// Directions that are summed together.
-const TOGETHER: usize = 4;
-
 impl Sum<'_> {
-    /// The veil in each direction, RGB.
-    pub fn at(&self, directions: &[DVec3]) -> Vec<[f64; 3]> {
-        directions.par_chunks(TOGETHER).flat_map_iter(|directions| self.together(directions)).collect()
+    /// The veil in directions of rows that are so long, RGB.
+    pub fn at(&self, summed: &Summed, directions: &[DVec3], columns: usize) -> Vec<[f64; 3]> {
+        match summed {
+            Summed::Single(table) => self.tiled(table, directions, columns),
+            Summed::Double(table) => self.tiled(table, directions, columns),
+        }
     }
 
-    /// The veil in neighbouring directions.
-    fn together(&self, directions: &[DVec3]) -> Vec<[f64; 3]> {
-        let middle = directions.iter().sum::<DVec3>() / directions.len() as f64;
-        let reach = directions.iter().map(|direction| direction.distance(middle)).fold(0.0, f64::max);
-        let mut veils = vec![[0.0; 3]; directions.len()];
-        self.each(middle, reach, |cell| {
-            for (veil, direction) in veils.iter_mut().zip(directions) {
-                let of = self.of(cell, *direction);
-                (0..3).for_each(|k| veil[k] += of[k]);
-            }
-        });
-        veils
+    fn tiled<T: Real>(&self, table: &Table<T>, directions: &[DVec3], columns: usize) -> Vec<[f64; 3]> {
+        let rows = directions.len() / columns;
+        let across = columns.div_ceil(TILE);
+        let members = |tile: usize| {
+            let (left, top) = (TILE * (tile % across), TILE * (tile / across));
+            let rows = top..rows.min(top + TILE);
+            rows.flat_map(move |row| (left..columns.min(left + TILE)).map(move |column| row * columns + column))
+        };
+        let tile = |tile: usize| {
+            let directions: Vec<DVec3> = members(tile).map(|member| directions[member]).collect();
+            let mut veils = Tile::new(table, &directions);
+            let middle = directions.iter().sum::<DVec3>() / directions.len() as f64;
+            let reach = directions.iter().map(|direction| direction.distance(middle)).fold(0.0, f64::max);
+            Arch::new().dispatch(
+                #[inline(always)]
+                || {
+                    self.each(
+                        middle,
+                        reach,
+                        #[inline(always)]
+                        |cell| veils.add(cell),
+                    )
+                },
+            );
+            veils.veils(directions.len()).collect::<Vec<_>>()
+        };
+        let tiles: Vec<Vec<[f64; 3]>> = (0..across * rows.div_ceil(TILE)).into_par_iter().map(tile).collect();
+        let mut all = vec![[0.0; 3]; directions.len()];
+        for (tile, veils) in tiles.iter().enumerate() {
+            members(tile).zip(veils).for_each(|(member, veil)| all[member] = *veil);
+        }
+        all
     }
 
     /// What the veil of one direction may be off by, RGB, beside rounding.
@@ -64,6 +86,7 @@ impl Sum<'_> {
     }
 
     /// Hands the cells that count at once about a direction to `take`.
+    #[inline(always)]
     fn each(&self, middle: DVec3, reach: f64, mut take: impl FnMut(&Cell)) {
         let mut open: Vec<Kept> = self.cut.roots().to_vec();
         while let Some(kept) = open.pop() {
@@ -75,14 +98,13 @@ impl Sum<'_> {
             }
         }
     }
+}
 
-    fn of(&self, cell: &Cell, direction: DVec3) -> [f64; 3] {
-        let square = direction.distance_squared(cell.centre);
-        let slopes = self.scatter.at(square);
-        let second = slopes.second * square * (1.0 - 0.25 * square);
-        [0, 1, 2].map(|k| {
-            let first = -2.0 * direction.dot(cell.dipole[k]);
-            slopes.value * cell.flux[k] + slopes.first * first + second * cell.spread[k]
-        })
-    }
+/// The veil of a cell in a direction, to the second order.
+#[cfg(test)]
+pub(super) fn second_order(cell: &Cell, direction: DVec3, scatter: &Tabled) -> [f64; 3] {
+    let square = direction.distance_squared(cell.centre);
+    let [value, first, half, _] = scatter.cubic(square);
+    let second = 2.0 * half * square * (1.0 - 0.25 * square);
+    [0, 1, 2].map(|k| value * cell.flux[k] - 2.0 * first * direction.dot(cell.dipole[k]) + second * cell.spread[k])
 }

@@ -32,6 +32,9 @@ pub(super) struct Cell {
 /// Cells of a panorama, the finest first; each next level has four of the one before in one.
 pub(super) struct Tree {
     levels: Vec<Level>,
+    /// Columns and rows of pixels in a finest cell.
+    block: usize,
+    pixels: Grid,
 }
 
 struct Level {
@@ -57,7 +60,13 @@ impl Tree {
             let next = coarser(&levels);
             levels.push(next);
         }
-        Self { levels }
+        let [width, height] = [photo.width(), photo.height()].map(|side| side as usize);
+        Self { levels, block: block(height), pixels: Grid { width, height } }
+    }
+
+    /// The panorama's pixels.
+    pub fn pixels(&self) -> Grid {
+        self.pixels
     }
 
     pub fn cell(&self, place: Place) -> &Cell {
@@ -82,26 +91,23 @@ impl Tree {
         })
     }
 
-    /// Directions that share a finest cell out evenly, `parts` squared, each with how far it reaches, by the sine.
-    pub fn parts(&self, place: Place, parts: usize) -> impl Iterator<Item = DVec3> {
-        let grid = self.levels[0].grid;
-        let offset = move |k: usize| (k as f64 + 0.5) / parts as f64 - 0.5;
-        (0..parts * parts).map(move |k| {
-            let (column, row) = (place.column as f64 + offset(k % parts), place.row as f64 + offset(k / parts));
-            grid.direction(column, row)
-        })
+    /// The pixels of a finest cell, by column and row.
+    pub fn pixels_of(&self, place: Place) -> impl Iterator<Item = (usize, usize)> {
+        let of = |at: usize, end: usize| self.block * at..end.min(self.block * (at + 1));
+        let (columns, rows) = (of(place.column, self.pixels.width), of(place.row, self.pixels.height));
+        rows.flat_map(move |row| columns.clone().map(move |column| (column, row)))
     }
+}
 
-    /// Half of the height of a finest cell, in radians.
-    pub fn half(&self) -> f64 {
-        0.5 * PI / self.levels[0].grid.height as f64
-    }
+/// Columns and rows of pixels in a finest cell of a panorama of so many rows.
+fn block(rows: usize) -> usize {
+    rows.div_ceil(ROWS)
 }
 
 /// Blocks of pixels.
 fn finest(photo: &Photo) -> Level {
     let [width, height] = [photo.width(), photo.height()].map(|side| side as usize);
-    let block = height.div_ceil(ROWS);
+    let block = block(height);
     let pixels = Grid { width, height };
     let grid = Grid { width: width.div_ceil(block), height: height.div_ceil(block) };
     let cell = |at: usize| {
@@ -144,7 +150,7 @@ fn edges(grid: Grid, [column, row]: [usize; 2], side: usize) -> [DVec3; 9] {
 
 impl Cell {
     /// Of a pixel, which shines evenly.
-    fn pixel(photo: &Photo, grid: Grid, column: usize, row: usize) -> Self {
+    pub fn pixel(photo: &Photo, grid: Grid, column: usize, row: usize) -> Self {
         let centre = grid.direction(column as f64, row as f64);
         let side = PI / grid.height as f64;
         // ∫ |v − centre|² over it, and how far inside the sphere its middle lies by that.
@@ -199,6 +205,20 @@ impl Cell {
             dipole: self.dipole.map(|dipole| share * dipole),
             spread: self.spread.map(|spread| share * spread),
             ..*self
+        }
+    }
+
+    /// A share of its light in a part of it, of some radius about a direction; no more than evenly spread there.
+    pub fn part(&self, share: f64, middle: DVec3, radius: f64) -> Self {
+        let flux = self.flux.map(|flux| share * flux);
+        // Of a square of that half diagonal.
+        let spread = radius * radius / 3.0;
+        Self {
+            flux,
+            dipole: flux.map(|flux| -0.5 * spread * flux * middle),
+            spread: flux.map(|flux| spread * flux),
+            centre: middle,
+            radius,
         }
     }
 

@@ -15,11 +15,10 @@ pub(crate) struct Tabled {
     pieces: Vec<[f64; 5]>,
 }
 
-/// k, its first and second slope by q, and the size of the third.
+/// k, its second slope by q, and the size of the third.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Slopes {
     pub value: f64,
-    pub first: f64,
     pub second: f64,
     pub third: f64,
 }
@@ -59,12 +58,14 @@ impl Tabled {
     pub fn at(&self, square: f64) -> Slopes {
         let ([middle, a, b, c, d], square) = self.piece(square);
         let x = square - middle;
-        Slopes {
-            value: a + x * (b + x * (c + x * d)),
-            first: b + x * (2.0 * c + 3.0 * x * d),
-            second: 2.0 * c + 6.0 * x * d,
-            third: 6.0 * d.abs(),
-        }
+        Slopes { value: a + x * (b + x * (c + x * d)), second: 2.0 * c + 6.0 * x * d, third: 6.0 * d.abs() }
+    }
+
+    /// The coefficients of a cubic about the square of a chord, from the constant on, which is k on the interval in which that lies.
+    pub fn cubic(&self, square: f64) -> [f64; 4] {
+        let ([middle, a, b, c, d], square) = self.piece(square);
+        let x = square - middle;
+        [a + x * (b + x * (c + x * d)), b + x * (2.0 * c + 3.0 * x * d), c + 3.0 * x * d, d]
     }
 
     #[inline]
@@ -91,7 +92,7 @@ mod tests {
             assert!((at.value / known - 1.0).abs() < 1e-6, "{angle}: {} for {known}", at.value);
             // A hundredth further, by the slopes.
             let way = 0.01 * square(angle);
-            let by = at.value + way * (at.first + 0.5 * way * at.second);
+            let by = at.value + way * (tabled.cubic(square(angle))[1] + 0.5 * way * at.second);
             let further = tabled.at(square(angle) + way).value;
             assert!((by / further - 1.0).abs() < 2e-5, "{angle}: {by} for {further}");
         }
