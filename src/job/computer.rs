@@ -4,7 +4,6 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use super::Known;
-use super::veil::Kept;
 use crate::Result;
 use crate::choices::Processor;
 use crate::gpu::{Device, Info};
@@ -20,8 +19,6 @@ pub struct Computer {
     scatter: Option<Scatter>,
     /// What sums veils, where someone said so.
     pub(super) veil_by: Option<Processor>,
-    /// The veil that was planned last.
-    pub(super) veil: Option<Kept>,
 }
 
 impl Computer {
@@ -29,7 +26,7 @@ impl Computer {
     /// by what was measured here, which [`Known::of`] reads, or by the built-in cost model, which is the default.
     pub fn new(device: Rc<Device>, known: Known) -> Self {
         let info = Arc::new(device.info().clone());
-        Self { device, info, known, renderer: None, scatter: None, veil_by: None, veil: None }
+        Self { device, info, known, renderer: None, scatter: None, veil_by: None }
     }
 
     /// Lets go of what renders, as after a panic in it; the next photo gets another.

@@ -11,6 +11,7 @@ mod summing;
 #[cfg(feature = "laboratory")]
 mod trials;
 
+use std::cell::RefCell;
 use std::rc::Rc;
 
 use rayon::prelude::*;
@@ -63,8 +64,13 @@ pub(super) struct Prepared {
     asked: f64,
 }
 
-/// The veil that was planned last: photos of a sequence that are seen alike share its plan, which depends on nothing else.
-pub(super) struct Kept {
+thread_local! {
+    /// The veil that this thread planned last: photos of a sequence that are seen alike share its plan, which depends on nothing else.
+    static KEPT: RefCell<Option<Kept>> = const { RefCell::new(None) };
+}
+
+/// How a veil is planned, and for what.
+struct Kept {
     asked_for: Wanted,
     grid: Option<Grid>,
     seat: Seat,
@@ -75,20 +81,12 @@ pub(super) struct Kept {
     asked: f64,
 }
 
-/// Plans the veil of a look for pixels of a frame, which is the photo's, or that of a photo made larger or smaller; `kept` is what was
-/// planned before, where that is remembered.
-fn prepared(
-    look: &Look,
-    wanted: &Wanted,
-    photo: &Photo,
-    frame: &Frame,
-    kept: &mut Option<Kept>,
-    stages: &mut Stages,
-) -> Result<Prepared> {
+/// Plans the veil of a look for pixels of a frame, which is the photo's, or that of a photo made larger or smaller.
+fn prepared(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame, stages: &mut Stages) -> Result<Prepared> {
     check(look, wanted, frame)?;
     let (view, seat) = seated(look, wanted, photo, frame)?;
     let (held, grid) = (Held::new(look, wanted), wanted.grid(&enlarged(look, frame)));
-    stages.time("veil plan", || {
+    let planned = |kept: &mut Option<Kept>| {
         let fits = |kept: &Kept| (&kept.asked_for, kept.grid, kept.seat, kept.held) == (wanted, grid, seat, held);
         if !kept.as_ref().is_some_and(fits) {
             let asked_for = wanted.clone();
@@ -98,7 +96,8 @@ fn prepared(
         }
         let Kept { wanted, channels, asked, .. } = kept.as_ref().expect("it is planned");
         Ok(Prepared { wanted: wanted.clone(), view, seat, channels: channels.clone(), asked: *asked })
-    })
+    };
+    stages.time("veil plan", || KEPT.with_borrow_mut(planned))
 }
 
 /// How a photo was seen, where that matters, and where the pixels of a frame lie for a veil.
@@ -132,7 +131,7 @@ fn enlarged(look: &Look, frame: &Frame) -> Frame {
 /// Those that computing it would have before it begins.
 pub fn plan_veil(look: &Look, photo: &Photo, frame: &Frame) -> Result<Option<VeilPlanned>> {
     let Some(wanted) = look.veil_on(frame) else { return Ok(None) };
-    let prepared = prepared(look, wanted, photo, frame, &mut None, &mut Stages::default())?;
+    let prepared = prepared(look, wanted, photo, frame, &mut Stages::default())?;
     Ok(Some(VeilPlanned::new(look, frame, prepared)))
 }
 
@@ -147,13 +146,11 @@ pub(super) fn cast(
     recovered: &Recovered,
     frame: &Frame,
     verify: Verify,
-    mut computer: Option<&mut Computer>,
+    computer: Option<&mut Computer>,
     stages: &mut Stages,
 ) -> Result<Option<Cast>> {
     let Some(wanted) = look.veil_on(frame) else { return Ok(None) };
-    let mut forgotten = None;
-    let kept = computer.as_deref_mut().map_or(&mut forgotten, |computer| &mut computer.veil);
-    let Prepared { wanted, view, seat, channels, asked } = prepared(look, wanted, photo, frame, kept, stages)?;
+    let Prepared { wanted, view, seat, channels, asked } = prepared(look, wanted, photo, frame, stages)?;
     let wanted = &wanted;
     let pixels = &*Emission::of(photo).given(recovered.over(&photo.pixels));
     let stored = veil::Photo::rgba(pixels.as_flattened(), seat.stored).map_err(failed)?;

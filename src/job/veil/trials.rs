@@ -43,7 +43,7 @@ pub(crate) fn trials(
     let plan = |&tolerance: &f64| {
         let section = VeilSection { tolerance: Some(tolerance), ..wanted.section() };
         let held = Wanted::new(&section, wanted.adds).map_err(told)?;
-        prepared(look, &held, photo, frame, &mut None, &mut Stages::default())
+        prepared(look, &held, photo, frame, &mut Stages::default())
     };
     let plans: Vec<Result<Prepared>> = tolerances.iter().map(plan).collect();
     let had: Vec<&Prepared> = plans.iter().flatten().collect();
