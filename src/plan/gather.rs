@@ -1,6 +1,7 @@
 //! Whether a group's spectrum is summed ghost by ghost, or gathered from the moments of cells.
 
 use glam::DVec2;
+use rayon::prelude::*;
 
 use super::decay::Decay;
 use super::{CostModel, Group, Prediction, amplitudes, images, share, weigh};
@@ -67,26 +68,32 @@ impl Gathering {
         let sizes = Sizes::new(group.smallest, group.largest, self.sizes);
         let of = |k: usize| &ghosts[group.members[k] as usize];
         let count = group.members.len();
-        let shares: Vec<f64> = (0..count).flat_map(|k| sizes.weights(of(k).size)).collect();
+        let each = self.sizes as usize;
+        let mut weights = vec![[0.0; 3]; count * each];
+        weights.par_chunks_exact_mut(each).with_min_len(CHUNK).enumerate().for_each(|(k, weights)| {
+            let whole = weigh::weight(of(k), scale);
+            let shares = sizes.weights(of(k).size);
+            weights.iter_mut().zip(shares).for_each(|(to, share)| *to = whole.map(|whole| share * whole));
+        });
         let turns = |k: usize| {
             let turns = of(k).center / period;
             (turns - turns.floor()).to_array()
         };
-        let weight = |k: usize, each: usize| {
-            let share = shares[k * self.sizes as usize + each];
-            weigh::weight(of(k), scale).map(|weight| share * weight)
-        };
+        let weight = |k: usize, size: usize| weights[k * each + size];
         let sums = match &self.by {
-            Gatherer::Grid(grid) => grid.sums([count, self.sizes as usize], turns, weight, group.degree),
+            Gatherer::Grid(grid) => grid.sums([count, each], turns, weight, group.degree),
             Gatherer::Cells(cells) => {
-                let point = |k: usize, each: usize| Point { turns: turns(k), weight: weight(k, each) };
-                let one = |each: usize| cells.sums(count, |k| point(k, each), group.degree);
-                (0..self.sizes as usize).map(one).collect()
+                let point = |k: usize, size: usize| Point { turns: turns(k), weight: weight(k, size) };
+                let one = |size: usize| cells.sums(count, |k| point(k, size), group.degree);
+                (0..each).map(one).collect()
             }
         };
         sizes.sizes().zip(sums).collect()
     }
 }
+
+/// Ghosts that one task shares out between sizes.
+const CHUNK: usize = 1 << 10;
 
 /// What a ghost costs in moments beside its own.
 const EACH: f64 = 25.0;

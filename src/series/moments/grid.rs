@@ -26,6 +26,9 @@ const ORDER: usize = 12;
 /// Points that one task spreads.
 const CHUNK: usize = 1 << 12;
 
+/// Nodes along each side of a tile, whose points are spread one after the other: what their splines reach a core has at hand.
+const TILE: usize = 16;
+
 type Wave = Complex<f64>;
 
 /// Nodes a period, along x and y; even.
@@ -41,7 +44,7 @@ struct Spread {
     weights: [[f64; ORDER]; 2],
 }
 
-/// Points of neighbouring rows, spread: rows from the first on, each wider than a turn, of one plane for each set and colour.
+/// Points of neighbouring tiles, spread: rows from the first on, each wider than a turn, of one plane for each set and colour.
 struct Band {
     first: usize,
     planes: Vec<Vec<f64>>,
@@ -121,13 +124,9 @@ impl Grid {
     ) -> Vec<Vec<f64>> {
         let [columns, rows] = self.nodes.map(|nodes| nodes as usize);
         let points: Vec<Spread> = (0..count).into_par_iter().map(|k| self.place(turns(k))).collect();
-        // Neighbours in a row share what a core has at hand.
-        let order = by_rows(&points, rows);
-        let band = |chunk: &[u32]| {
-            let points = chunk.iter().map(|&index| (&points[index as usize], index as usize));
-            Band::new(points, columns, sets, &weight)
-        };
-        let bands: Vec<Band> = order.par_chunks(CHUNK).filter_map(band).collect();
+        let order = by_tiles(&points, [columns, rows]);
+        let bands: Vec<Band> =
+            order.par_chunks(CHUNK).map(|chunk| Band::new(&points, chunk, columns, sets, &weight)).collect();
         let mut planes = vec![vec![0.0; columns * rows]; 3 * sets];
         for band in bands {
             for (plane, wide) in planes.iter_mut().zip(&band.planes) {
@@ -180,16 +179,36 @@ impl Grid {
 /// 1 + 1 of the nearest two frequencies, and others that are smaller by far where n is no more than a third of the nodes.
 const TWO_AND_OTHERS: f64 = 2.1;
 
-/// Their numbers by the first row that each reaches, by counting.
-fn by_rows(points: &[Spread], rows: usize) -> Vec<u32> {
-    let mut starts = vec![0u32; rows + 1];
-    points.iter().for_each(|point| starts[point.first[1] + 1] += 1);
-    for row in 0..rows {
-        starts[row + 1] += starts[row];
+impl Spread {
+    /// The tile of the first node that it reaches.
+    fn tile(&self) -> [usize; 2] {
+        self.first.map(|first| first / TILE)
+    }
+
+    /// Adds so many times the spline to a plane from the first node that it reaches on.
+    #[inline(always)]
+    fn add(&self, times: f64, stride: usize, plane: &mut [f64]) {
+        let [across, down] = &self.weights;
+        for (down, row) in down.iter().zip(plane.chunks_mut(stride)) {
+            let weight = times * down;
+            row[..ORDER].iter_mut().zip(across).for_each(|(to, across)| *to += weight * across);
+        }
+    }
+}
+
+/// Their numbers, tile by tile along its row of tiles, by counting.
+fn by_tiles(points: &[Spread], [columns, rows]: [usize; 2]) -> Vec<u32> {
+    let across = columns.div_ceil(TILE);
+    let tile = |point: &Spread| point.tile()[1] * across + point.tile()[0];
+    let tiles = across * rows.div_ceil(TILE);
+    let mut starts = vec![0u32; tiles + 1];
+    points.iter().for_each(|point| starts[tile(point) + 1] += 1);
+    for tile in 0..tiles {
+        starts[tile + 1] += starts[tile];
     }
     let mut order = vec![0; points.len()];
     for (index, point) in (0..).zip(points) {
-        let next = &mut starts[point.first[1]];
+        let next = &mut starts[tile(point)];
         order[*next as usize] = index;
         *next += 1;
     }
@@ -197,32 +216,38 @@ fn by_rows(points: &[Spread], rows: usize) -> Vec<u32> {
 }
 
 impl Band {
-    /// Of points and their numbers, in the order of their rows; none of no points.
-    fn new<'a>(
-        points: impl DoubleEndedIterator<Item = (&'a Spread, usize)> + Clone,
+    /// Of some points, one or more, by their numbers in the order of their tiles.
+    fn new(
+        points: &[Spread],
+        chosen: &[u32],
         columns: usize,
         sets: usize,
         weight: impl Fn(usize, usize) -> [f64; 3],
-    ) -> Option<Self> {
-        let (first, last) = (points.clone().next()?.0.first[1], points.clone().next_back()?.0.first[1]);
+    ) -> Self {
+        let of = |index: &u32| &points[*index as usize];
+        let rows = || chosen.iter().map(|index| of(index).first[1]);
+        let (first, last) = rows().fold((usize::MAX, 0), |(first, last), row| (first.min(row), last.max(row)));
         let stride = columns + ORDER;
         let mut planes = vec![vec![0.0; stride * (last - first + ORDER)]; 3 * sets];
-        Arch::new().dispatch(
-            #[inline(always)]
-            || {
-                for (Spread { first: [column, row], weights: [across, down] }, index) in points {
-                    let weights = (0..sets).flat_map(|set| weight(index, set));
-                    for (plane, weight) in planes.iter_mut().zip(weights) {
-                        for (k, down) in down.iter().enumerate() {
-                            let to = &mut plane[(row - first + k) * stride + column..][..ORDER];
-                            let weight = weight * down;
-                            to.iter_mut().zip(across).for_each(|(to, across)| *to += weight * across);
-                        }
-                    }
+        let mut weights = Vec::new();
+        for tile in chosen.chunk_by(|one, other| of(one).tile() == of(other).tile()) {
+            for (set, planes) in planes.chunks_exact_mut(3).enumerate() {
+                weights.clear();
+                weights.extend(tile.iter().map(|&index| weight(index as usize, set)));
+                for (colour, plane) in planes.iter_mut().enumerate() {
+                    Arch::new().dispatch(
+                        #[inline(always)]
+                        || {
+                            for (point, weight) in tile.iter().map(of).zip(&weights) {
+                                let [column, row] = point.first;
+                                point.add(weight[colour], stride, &mut plane[(row - first) * stride + column..]);
+                            }
+                        },
+                    );
                 }
-            },
-        );
-        Some(Self { first, planes })
+            }
+        }
+        Self { first, planes }
     }
 }
 
