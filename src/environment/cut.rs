@@ -233,6 +233,8 @@ pub(super) fn divided(
     // What is farther from a pole is wider.
     let width = |down: usize| grid.direction(0.0, at(row, down as f64 + 0.5)).truncate().length();
     let widths: f64 = (0..count).map(width).sum();
+    // Half a diagonal, at the equator: no part is larger.
+    let radius = std::f64::consts::PI / (grid.height * count) as f64 / std::f64::consts::SQRT_2;
     let mut left = Vec::new();
     for down in 0..count {
         let share = width(down) / widths / count as f64;
@@ -240,6 +242,15 @@ pub(super) fn divided(
             let corner = |right: usize, below: usize| {
                 sight.seen(grid.direction(at(column, (across + right) as f64), at(row, (down + below) as f64)))
             };
+            let centre = grid.direction(at(column, across as f64 + 0.5), at(row, down as f64 + 0.5));
+            let depth = shown.inside(sight.seen(centre));
+            if depth >= radius {
+                continue;
+            }
+            if depth <= -radius {
+                left.push(Left { share, middle: centre, radius });
+                continue;
+            }
             let quad: Quad = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
             if let Some(part) = outside(&quad, shown) {
                 let share = share * part.share;

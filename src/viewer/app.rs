@@ -166,7 +166,7 @@ impl App {
 
     /// Whether a veil is being summed in the background.
     pub fn is_veiling(&self) -> bool {
-        self.stage.veiling().is_summing()
+        self.stage.veiling().is_summing() || self.stage.removing().is_running()
     }
 
     /// Where the picture lay on the screen in the last frame.

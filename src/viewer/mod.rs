@@ -39,6 +39,7 @@ mod input;
 mod loader;
 pub mod model;
 mod panels;
+mod removing;
 pub mod replay;
 mod shortcuts;
 mod stage;

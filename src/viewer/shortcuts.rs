@@ -10,11 +10,12 @@ use crate::photo::ToneMap;
 /// Keys and what they do, for the list that a person can read.
 ///
 /// A test holds it against what the window takes: names of keys as egui has them, with what is held before them.
-pub const KEYS: [(&str, &str); 20] = [
+pub const KEYS: [(&str, &str); 21] = [
     ("F, 1", "fit the photo to the window; a pixel to a pixel"),
     ("+, =, −", "magnify; make smaller"),
     ("B", "the photo as it was, and back"),
     ("G", "the glare alone, and back"),
+    ("C", "the photo without the look's veil, and back"),
     ("W", "a wipe between the photo as it was and with its glare"),
     ("L", "the lights' handles"),
     ("I", "the loupe"),
@@ -56,6 +57,9 @@ pub fn apply(context: &Context, document: &mut Document, placement: Option<&Plac
     }
     if pressed(Key::G) {
         viewing.shows = other(Shows::Glare, viewing.shows);
+    }
+    if pressed(Key::C) {
+        viewing.shows = other(Shows::Clean, viewing.shows);
     }
     if pressed(Key::W) {
         viewing.wipe = viewing.wipe.map_or(Some(0.5), |_| None);

@@ -1,5 +1,6 @@
 //! The picture on the device. Computes what has changed since it was last asked, and nothing else.
 
+mod clean;
 mod show;
 
 use std::rc::Rc;
@@ -9,6 +10,7 @@ use std::time::Instant;
 use super::document::Document;
 use super::loader::Wake;
 use super::model::{self, Accuracy, Look, Work};
+use super::removing::Removing;
 use super::study::{Picture, Study};
 use super::timings::Timings;
 use super::veiling::Veiling;
@@ -36,6 +38,8 @@ pub struct Counts {
     pub spectra: u64,
     /// Veils summed.
     pub veils: u64,
+    /// Photos from which a veil was taken away.
+    pub removals: u64,
     /// Pictures composited.
     pub composites: u64,
     /// Regions of the screen drawn.
@@ -124,6 +128,7 @@ pub struct Stage {
     timings: Timings,
     study: Study,
     veiling: Veiling,
+    removing: Removing,
 }
 
 impl Stage {
@@ -142,7 +147,8 @@ impl Stage {
             times: Times::default(),
             timings: Timings::default(),
             study: Study::new(wake.clone()),
-            veiling: Veiling::new(wake),
+            veiling: Veiling::new(wake.clone()),
+            removing: Removing::new(wake),
         })
     }
 
@@ -157,6 +163,7 @@ impl Stage {
             self.live.picture.field.forget_scene();
             self.live.picture.load(document.frame, document.pixels())?;
             self.veiling.clear();
+            self.removing.clear();
             self.counts.uploads += 1;
             self.made.document = Some(number);
         }
@@ -220,10 +227,15 @@ impl Stage {
             settings.constant =
                 *constant.get_or_insert_with(|| self.live.picture.field.constant_term().unwrap_or_default());
         }
-        if self.veiling.load(&mut self.live.picture, document, shows == Shows::Glare)? {
-            self.made.picture = None;
+        if shows == Shows::Clean {
+            settings = self.cleaned(number, document, frame, &known, preview)?;
+        } else {
+            if self.veiling.load(&mut self.live.picture, document, shows == Shows::Glare)? {
+                self.removing.unload();
+                self.made.picture = None;
+            }
+            settings.overlay = self.veiling.weights();
         }
-        settings.overlay = self.veiling.weights();
         if self.made.picture == Some((settings, shows)) {
             return Ok(());
         }
@@ -244,7 +256,7 @@ impl Stage {
         let Some((settings, shows)) = self.made.picture.filter(|_| !self.made.drawn) else { return Ok(()) };
         match shows {
             Shows::Glare => self.live.picture.draw_glare(document.frame, &settings)?,
-            Shows::Picture | Shows::Photo => self.live.picture.draw(document.frame, &settings)?,
+            Shows::Picture | Shows::Photo | Shows::Clean => self.live.picture.draw(document.frame, &settings)?,
         }
         self.made.drawn = true;
         Ok(())
@@ -304,6 +316,7 @@ impl Stage {
     /// Takes in a veil that has been summed.
     pub fn take_in(&mut self) {
         self.veiling.take_in();
+        self.removing.take_in();
     }
 
     /// The veil of the picture.
@@ -334,6 +347,7 @@ impl Stage {
         self.live.picture.field.forget_scene();
         self.plan = None;
         self.veiling.clear();
+        self.removing.clear();
     }
 
     /// The plan of the picture on the device.
@@ -359,7 +373,7 @@ impl Stage {
 
     /// How often each kind of work was done.
     pub fn counts(&self) -> Counts {
-        Counts { veils: self.veiling.effort().0, ..self.counts }
+        Counts { veils: self.veiling.effort().0, removals: self.removing.count(), ..self.counts }
     }
 
     /// How long each kind of work last took.

@@ -241,6 +241,14 @@ impl Veiling {
         Ok(true)
     }
 
+    /// The device has other layers now.
+    pub fn unload(&mut self) {
+        if let Some(known) = &mut self.known {
+            known.loaded = None;
+        }
+        self.laid_over = false;
+    }
+
     /// What the layers on the device are multiplied by.
     pub fn weights(&self) -> [[f64; 3]; MOST_LAYERS] {
         let mut weights = [[0.0; 3]; MOST_LAYERS];

@@ -20,6 +20,8 @@ pub enum Shows {
     Photo,
     /// The glare alone.
     Glare,
+    /// The photo without the veil that the look describes.
+    Clean,
 }
 
 /// Which part of the picture is seen, and how large.

@@ -45,6 +45,16 @@ impl Session {
         self.wait(|app| !app.is_veiling());
     }
 
+    /// What the screen has where the photo is.
+    fn canvas(&self) -> Vec<[u8; 4]> {
+        let (rect, screen) = (self.app.placement().unwrap().rect, self.screen.read());
+        let is_inside = |index: usize| {
+            let (x, y) = (index as u32 % SIZE[0], index as u32 / SIZE[0]);
+            rect.contains(pos2(x as f32 + 0.5, y as f32 + 0.5))
+        };
+        screen.into_iter().enumerate().filter(|(index, _)| is_inside(*index)).map(|(_, pixel)| pixel).collect()
+    }
+
     fn veils(&self) -> u64 {
         self.app.counts().veils
     }
@@ -148,6 +158,59 @@ fn the_window_shows_the_veil_that_apply_lays_over_the_photo() {
             std::fs::remove_file(path(name)).unwrap();
         }
     }
+}
+
+#[test]
+fn the_window_shows_the_photo_that_remove_cleans() {
+    let (folder, mut session) = in_a_folder();
+    let path = |name: &str| folder.path().join(name);
+    let strong = Look { strength: 0.4, ..with_veil(gaussian(0.3)) };
+    for (at, look) in [with_veil(gaussian(0.05)), strong].into_iter().enumerate() {
+        session.take(look);
+        let with_glare = session.canvas();
+        session.app.save_look(&path("look.toml"));
+        let status = Command::new(env!("CARGO_BIN_EXE_vglare"))
+            .args(["remove", "--quiet", "--force", "--allow-floor"])
+            .arg(path("room.exr"))
+            .args(["-o".into(), path("clean.exr"), "--scene".into(), path("look.toml")])
+            .status()
+            .unwrap();
+        assert!(status.success());
+        session.app.document_mut().unwrap().viewing.shows = Shows::Clean;
+        session.rest();
+        session.settle();
+        let removals = at as u64 + 1;
+        assert_eq!((session.app.counts().removals, session.app.problem()), (removals, None));
+        let (worst, spread) = session.apart(&photo::read(&path("clean.exr")).unwrap());
+        assert!(worst <= 1.5 && spread > 20.0, "look {at}: {worst} codes apart of {spread}");
+        let clean = session.canvas();
+        assert!(clean != with_glare, "look {at}");
+        // Away and back again costs no other.
+        session.app.document_mut().unwrap().viewing.shows = Shows::Picture;
+        session.settle();
+        assert!(session.canvas() == with_glare, "look {at}");
+        session.app.document_mut().unwrap().viewing.shows = Shows::Clean;
+        session.settle();
+        assert!(session.canvas() == clean && session.app.counts().removals == removals, "look {at}");
+        session.app.document_mut().unwrap().viewing.shows = Shows::Picture;
+        session.settle();
+        std::fs::remove_file(path("look.toml")).unwrap();
+    }
+}
+
+/// Where no answer can be proved, the window says so, and shows the photo.
+#[test]
+fn a_veil_that_cannot_be_taken_away_leaves_the_photo() {
+    let (folder, mut session) = in_a_folder();
+    let camera = Parameters { scatter: Some(0.8), ..Parameters::new(Name::Camera) };
+    let sphere = VeilSection { projection: None, ..section(camera.clone()) };
+    session.take(Look { veil: Some(Veil::new(&sphere, false).unwrap()), ..with_veil(camera) });
+    session.app.document_mut().unwrap().viewing.shows = Shows::Clean;
+    session.rest();
+    session.settle();
+    assert_eq!(session.app.counts().removals, 0);
+    let (worst, spread) = session.apart(&photo::read(&folder.path().join("room.exr")).unwrap());
+    assert!(worst <= 1.5 && spread > 20.0, "{worst} codes apart of {spread}");
 }
 
 #[test]
