@@ -3,7 +3,7 @@
 use std::process::Command;
 
 use tempfile::TempDir;
-use vglare::choices::{Mix, Projection};
+use vglare::choices::{Border, Mix, Projection};
 use vglare::look::{LookLens, Veil};
 use vglare::photo::ToneMap;
 use vglare::psf::{Name, Parameters};
@@ -202,9 +202,9 @@ fn the_window_shows_the_photo_that_remove_cleans() {
 #[test]
 fn a_veil_that_cannot_be_taken_away_leaves_the_photo() {
     let (folder, mut session) = in_a_folder();
-    let camera = Parameters { scatter: Some(0.8), ..Parameters::new(Name::Camera) };
-    let sphere = VeilSection { projection: None, ..section(camera.clone()) };
-    session.take(Look { veil: Some(Veil::new(&sphere, false).unwrap()), ..with_veil(camera) });
+    let gaussian = Parameters { scatter: Some(0.9), ..gaussian(0.05) };
+    let mirrored = VeilSection { border: Some(Border::Mirror), ..section(gaussian.clone()) };
+    session.take(Look { veil: Some(Veil::new(&mirrored, false).unwrap()), ..with_veil(gaussian) });
     session.app.document_mut().unwrap().viewing.shows = Shows::Clean;
     session.rest();
     session.settle();
