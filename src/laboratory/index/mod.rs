@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use crate::gpu::Device;
 use crate::job::{Computer, Done, Found, Stages, Unwatched, Wanted};
-use crate::laboratory::chart::Kind;
+use crate::chart::Kind;
 use crate::look::{Look, LookLens};
 use crate::options::numbers::{not_negative, positive};
 use crate::options::{AccuracyArgs, FindArgs, ReadArgs, SceneArgs, VeilArgs};
@@ -126,7 +126,7 @@ pub struct Index {
 /// [`Error::Usage`] for a chart or a spot that cannot be; those of reading, of the look and of the job.
 pub fn run(args: &Args) -> Result<()> {
     if let Some(path) = &args.photo {
-        let photo = photo::read_with(path, &args.reading.options())?;
+        let photo = photo::read_with(path, &args.reading.of_white(args.veil.white_luminance()))?;
         stderr::warn(&photo.source.notes);
         let spots = spots::measured(&photo, &args.spot)?;
         return told::spots(args.json, path, &photo, &spots);

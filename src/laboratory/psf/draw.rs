@@ -6,7 +6,7 @@ use image::RgbImage;
 use image::imageops::replace;
 
 use super::{Shown, units};
-use crate::laboratory::chart::{Chart, Kind, Series, Stroke};
+use crate::chart::{Chart, Kind, Series, Stroke};
 use crate::laboratory::page::write_png;
 use crate::psf::{Mode, Row};
 use crate::{Result, target};

@@ -5,7 +5,7 @@ mod draw;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use crate::laboratory::chart::Kind;
+use crate::chart::Kind;
 use crate::options::numbers::positive;
 use crate::options::psf::{told, wrong};
 use crate::options::{ApertureArgs, PsfArgs};

@@ -11,7 +11,7 @@ use super::sample::{Pictured, composite, pictured};
 use super::study::{Study, at_most};
 use crate::Result;
 use crate::frame::{Frame, Window};
-use crate::laboratory::chart::{Axis, Map, Scalar};
+use crate::chart::{Axis, Map, Scalar};
 use crate::photo::{Photo, Shown};
 use crate::plan::{Request, plan};
 use crate::reference;
