@@ -29,14 +29,15 @@ const SMALLEST: u32 = 480;
 const DECADES: f64 = 5.0;
 
 impl Scalar {
-    /// The field in logarithmic false colours below a title, beside a bar with ticks and their unit; each of its pixels is
+    /// The field in logarithmic false colours below a title, beside a bar with ticks and the label of `value`; each of its pixels is
     /// `pixel_aspect` times as wide as high.
     ///
-    /// The bar spans what is above 0, but no more than five decades, from and to a 1, 2 or 5 times a power of ten; what lies below,
-    /// 0 and negative values too, has the colour of its lower end. Magenta is no number.
-    pub fn logarithmic_map(&self, title: &str, unit: &str, map: Map, pixel_aspect: f64) -> Sheet {
+    /// The bar spans the range of `value`, or else what is above 0, but no more than five decades, from and to a 1, 2 or 5 times a
+    /// power of ten; what lies below, 0 and negative values too, has the colour of its lower end. Magenta is no number.
+    pub fn logarithmic_map(&self, title: &str, value: Axis, map: Map, pixel_aspect: f64) -> Sheet {
         let drawn = self.reduced(LARGEST);
-        let range = drawn.decades();
+        let range = value.range.unwrap_or_else(|| drawn.decades());
+        let unit = &value.label;
         let logarithm = |value: &f64| if value.is_nan() { f64::NAN } else { value.max(0.0).log10() };
         let logarithms = Self { values: drawn.values.iter().map(logarithm).collect(), ..drawn };
         let colours = logarithms.colours(map, range.map(f64::log10));
@@ -50,13 +51,13 @@ impl Scalar {
         sheet.shapes.push(Shape::Picture { picture, at: [MARGIN, head] });
         let middle = f64::from(MARGIN / 2 + HEAD / 2);
         let right = f64::from(sheet.size[0]) - 12.0;
-        sheet.text(unit, [right, middle], FONT, INK, Anchor::Right);
+        sheet.text(unit.as_str(), [right, middle], FONT, INK, Anchor::Right);
         // A title that is too long becomes smaller instead of losing its end.
         let room = right - text_width(unit, FONT) - 24.0 - f64::from(MARGIN);
         let size = TITLE_FONT * (room / text_width(title, TITLE_FONT).max(1.0)).min(1.0);
         sheet.text(title, [f64::from(MARGIN), middle], size, INK, Anchor::Left);
-        let axis = Axis { range: Some(range), log: true, ..Axis::default() };
-        sheet.colour_bar([MARGIN + width + GAP, head], height, &axis, map);
+        let value = Axis { range: Some(range), log: true, ..value };
+        sheet.colour_bar([MARGIN + width + GAP, head], height, &value, map);
         sheet
     }
 
@@ -83,7 +84,8 @@ impl Scalar {
     /// The range of what is above 0, to the next 1, 2 or 5 times a power of ten; 0.1 to 1 where nothing is.
     fn decades(&self) -> [f64; 2] {
         let above = self.values.iter().copied().filter(|value| value.is_finite() && *value > 0.0);
-        let [low, high] = above.fold([f64::INFINITY, 0.0], |[low, high], value| [f64::min(low, value), f64::max(high, value)]);
+        let [low, high] =
+            above.fold([f64::INFINITY, 0.0], |[low, high], value| [f64::min(low, value), f64::max(high, value)]);
         if high == 0.0 {
             return [0.1, 1.0];
         }
@@ -168,7 +170,7 @@ mod tests {
     #[test]
     fn ticks_stand_where_their_numbers_have_their_colours() {
         let values = [1.0, 10.0, 100.0, 1000.0];
-        let sheet = field(&values).logarithmic_map("title", "cd/m²", Map::Inferno, 1.0);
+        let sheet = field(&values).logarithmic_map("title", Axis::default(), Map::Inferno, 1.0);
         let numbers = numbers(&sheet);
         assert_eq!(numbers.iter().map(|(text, _)| text.as_str()).collect::<Vec<_>>(), ["1000", "100", "10", "1"]);
         let steps: Vec<f64> = numbers.windows(2).map(|pair| pair[1].1 - pair[0].1).collect();
@@ -183,11 +185,22 @@ mod tests {
     }
 
     #[test]
+    fn a_range_that_is_given_is_that_of_the_bar() {
+        let axis = Axis { label: "cd/m²".into(), range: Some([1e-2, 1e2]), log: true };
+        let sheet = field(&[1.0, 1e5]).logarithmic_map("title", axis, Map::Grey, 1.0);
+        let told: Vec<String> = numbers(&sheet).into_iter().map(|(text, _)| text).collect();
+        assert_eq!(told, ["100", "10", "1", "0.1", "0.01"]);
+        let (picture, _) = sheet.pictures().next().unwrap();
+        assert_eq!([0, picture.width() - 1].map(|column| picture.get_pixel(column, 0).0[0]), [128, 255]);
+        assert!(sheet.shapes.iter().any(|shape| matches!(shape, Shape::Text { text, .. } if text == "cd/m²")));
+    }
+
+    #[test]
     fn a_large_field_is_drawn_by_means() {
         let reduced = Scalar::from_fn(7, 3, |column, row| f64::from(column + 10 * row)).reduced(4);
         assert_eq!([reduced.width, reduced.height], [4, 2]);
         assert_eq!(reduced.values, [5.5, 7.5, 9.5, 11.0, 20.5, 22.5, 24.5, 26.0]);
-        let sheet = field(&[0.0, f64::NAN]).logarithmic_map("a title", "cd/m²", Map::Inferno, 2.0);
+        let sheet = field(&[0.0, f64::NAN]).logarithmic_map("a title", Axis::default(), Map::Inferno, 2.0);
         let (picture, _) = sheet.pictures().next().unwrap();
         assert_eq!(picture.get_pixel(0, 0).0, Map::Inferno.colour(0.0), "0 is darkest");
         assert_eq!(picture.get_pixel(picture.width() - 1, 0).0, [255, 0, 255], "what is no number stands out");

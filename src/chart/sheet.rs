@@ -11,9 +11,9 @@ use plotters::prelude::{BitMapBackend, DrawingArea, DrawingBackend, IntoDrawingA
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color as _, ShapeStyle};
 
-use super::{Colour, Kind, write_png};
 use super::line::{clipped, dashes};
 use super::paint::{self, BITMAP_DROP, FINE, failed, font, rgb};
+use super::{Colour, Kind, write_png};
 use crate::printable::printable;
 use crate::{Result, target};
 

@@ -6,6 +6,7 @@ use std::io::{self, Write};
 use serde::Serialize;
 
 use crate::photo::{LuminanceScale, Photo};
+use crate::terminal::digits;
 
 /// The luminance of a picture in cd/m², of its pixels that are finite numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -32,7 +33,7 @@ impl Extent {
 
 impl fmt::Display for Extent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} on average, {} at most", number(self.mean), number(self.max))
+        write!(f, "{} on average, {} at most", digits(self.mean), digits(self.max))
     }
 }
 
@@ -41,20 +42,11 @@ impl fmt::Display for Extent {
 /// # Errors
 /// Where it cannot be written.
 pub fn line(out: &mut dyn Write, scale: &LuminanceScale, pictures: [(&str, &Option<Extent>); 2]) -> io::Result<()> {
-    write!(out, "cd/m²    {} of white, {}", number(scale.cd_m2_per_unit), scale.from)?;
+    write!(out, "cd/m²    {} of white, {}", digits(scale.cd_m2_per_unit), scale.from)?;
     for (name, extent) in pictures {
         extent.iter().try_for_each(|extent| write!(out, "; {name} {extent}"))?;
     }
     writeln!(out)
-}
-
-/// A luminance in four digits.
-fn number(value: f64) -> String {
-    if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
-        let digits = if value == 0.0 { 0 } else { (3 - value.abs().log10().floor() as i32).max(0) as usize };
-        return format!("{value:.digits$}");
-    }
-    format!("{value:.3e}")
 }
 
 #[cfg(test)]
@@ -70,11 +62,5 @@ mod tests {
         assert!((extent.mean - 250.0).abs() < 1e-12 && (extent.max - 400.0).abs() < 1e-12, "{extent:?}");
         assert_eq!(extent.to_string(), "250.0 on average, 400.0 at most");
         assert_eq!(Extent::of(&Photo::new(1, 1, vec![pixel(f32::NAN)]), &scale), None);
-    }
-
-    #[test]
-    fn numbers_have_four_digits() {
-        let numbers = [0.0, 0.012_344, 1.0, 123.45, 45_678.9, 1.5e7, -2e-5].map(number);
-        assert_eq!(numbers, ["0", "0.01234", "1.000", "123.5", "45679", "1.500e7", "-2.000e-5"]);
     }
 }

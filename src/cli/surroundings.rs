@@ -146,7 +146,9 @@ fn placed(photo: Photo, view: Photo) -> Result<Photo> {
     if let (Some(one), Some(other)) = (photo.luminance_scale(), view.luminance_scale()) {
         let [one, other] = [one, other].map(|scale| scale.cd_m2_per_unit);
         if (one / other - 1.0).abs() > SAME_UNIT {
-            let why = format!("white is {one:.4} cd/m² in the photo and {other:.4} in the panorama: --luminance says it of both");
+            let why = format!(
+                "white is {one:.4} cd/m² in the photo and {other:.4} in the panorama: --luminance says it of both"
+            );
             return refused(&why);
         }
     }

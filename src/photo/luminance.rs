@@ -42,8 +42,13 @@ pub struct LuminanceScale {
 
 impl LuminanceScale {
     /// The luminance of a pixel in cd/m².
-    pub fn of(&self, pixel: &[f32; 4]) -> f64 {
-        self.weights.iter().zip(pixel).map(|(weight, &value)| weight * f64::from(value)).sum()
+    pub fn of(&self, &[red, green, blue, _]: &[f32; 4]) -> f64 {
+        self.of_colour([red, green, blue].map(f64::from))
+    }
+
+    /// The luminance of a colour in cd/m².
+    pub fn of_colour(&self, rgb: [f64; 3]) -> f64 {
+        self.weights.iter().zip(rgb).map(|(weight, part)| weight * part).sum()
     }
 }
 
@@ -84,7 +89,10 @@ pub(super) fn settle(photo: &mut Photo, asked: Option<WhiteLuminance>) -> Result
     photo.source.luminance = match (asked, said) {
         (Some(WhiteLuminance::Given(cd_m2)), _) => Some(Said::of_white(cd_m2, "as given".to_owned())),
         (Some(WhiteLuminance::File), None) => {
-            return Err("it does not say what its numbers are in cd/m²: OpenEXR does by whiteLuminance, and Radiance HDR".into());
+            return Err(
+                "it does not say what its numbers are in cd/m²: OpenEXR does by whiteLuminance, and Radiance HDR"
+                    .into(),
+            );
         }
         (Some(WhiteLuminance::File), Some(said)) if !said.is_sound() => {
             return Err(format!("{} makes no luminance of its numbers", said.from).into());
@@ -112,7 +120,9 @@ impl Photo {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Primaries;
+    use std::path::Path;
+
+    use super::super::{Primaries, ReadOptions, WriteOptions, read, read_with, write};
     use super::*;
 
     fn settled(said: Option<Said>, asked: Option<WhiteLuminance>) -> Result<Photo, String> {
@@ -124,13 +134,16 @@ mod tests {
 
     #[test]
     fn what_is_asked_for_wins_over_what_a_file_says() {
-        let said = || Some(Said::of_white(50.0, "its whiteLuminance, 50".into()));
+        let said = || Some(Said::of_white(50.0, "its whiteLuminance of 50".into()));
         let implied = || said().map(|said| Said { explicit: false, ..said });
         let white = |said, asked| settled(said, asked).unwrap().luminance_scale().map(|scale| scale.cd_m2_per_unit);
         let given = Some(WhiteLuminance::Given(250.0));
         let file = Some(WhiteLuminance::File);
         assert_eq!([white(None, None), white(None, given)], [None, Some(250.0)]);
-        assert_eq!([white(said(), None), white(said(), given), white(said(), file)], [Some(50.0), Some(250.0), Some(50.0)]);
+        assert_eq!(
+            [white(said(), None), white(said(), given), white(said(), file)],
+            [Some(50.0), Some(250.0), Some(50.0)]
+        );
         assert_eq!([white(implied(), None), white(implied(), file)], [None, Some(50.0)]);
         assert!(settled(None, file).unwrap_err().contains("whiteLuminance"));
     }
@@ -138,13 +151,59 @@ mod tests {
     #[test]
     fn what_makes_no_luminance_is_told_and_never_used() {
         for white in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            let said = || Some(Said::of_white(white, format!("its whiteLuminance, {white},")));
+            let said = || Some(Said::of_white(white, format!("its whiteLuminance of {white}")));
             let photo = settled(said(), None).unwrap();
             assert_eq!(photo.luminance_scale(), None, "{white}");
-            assert!(photo.source.notes[0].contains(&format!("whiteLuminance, {white}")), "{:?}", photo.source.notes);
+            assert!(photo.source.notes[0].contains(&format!("whiteLuminance of {white}")), "{:?}", photo.source.notes);
             assert!(settled(said(), Some(WhiteLuminance::File)).is_err(), "{white}");
             let given = settled(said(), Some(WhiteLuminance::Given(2.0))).unwrap();
             assert!(given.source.notes.is_empty() && given.luminance_scale().is_some());
+        }
+    }
+
+    /// An OpenEXR file whose part says that.
+    fn file_of_white(path: &Path, white: Option<f32>) {
+        use exr::prelude::{Encoding, Image, Layer, LayerAttributes, SpecificChannels, WritableImage as _};
+        let attributes = LayerAttributes { white_luminance: white, ..LayerAttributes::default() };
+        let channels = SpecificChannels::rgb(|_| (1.0_f32, 2.0_f32, 4.0_f32));
+        let layer = Layer::new((2, 1), attributes, Encoding::FAST_LOSSLESS, channels);
+        Image::from_layer(layer).write().to_file(path).unwrap();
+    }
+
+    #[test]
+    fn openexr_says_what_white_is_and_keeps_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let [from, to] = ["from.exr", "to.exr"].map(|name| folder.path().join(name));
+        let overwrite = WriteOptions { overwrite: true, ..WriteOptions::default() };
+        let white = |photo: &Photo| photo.luminance_scale().map(|scale| scale.cd_m2_per_unit);
+        let given =
+            |cd_m2| ReadOptions { white_luminance: Some(WhiteLuminance::Given(cd_m2)), ..ReadOptions::default() };
+        for (said, options, wanted) in [
+            (None, ReadOptions::default(), None),
+            (Some(80.5), ReadOptions::default(), Some(80.5)),
+            (Some(80.5), given(250.0), Some(250.0)),
+            (None, given(250.0), Some(250.0)),
+        ] {
+            file_of_white(&from, said);
+            let photo = read_with(&from, &options).unwrap();
+            assert_eq!(white(&photo), wanted);
+            // As it is, with other pixels, beside it, and without a file's header of its own.
+            let mut brighter = photo.clone();
+            brighter.pixels.iter_mut().for_each(|pixel| pixel[1] *= 2.0);
+            let mut plain = Photo::new(2, 1, photo.pixels.clone());
+            plain.source.luminance = photo.source.luminance.clone();
+            for photo in [photo.clone(), brighter, photo.companion(photo.pixels.clone()), plain] {
+                write(&to, &photo, &overwrite).unwrap();
+                assert_eq!(white(&read(&to).unwrap()), wanted);
+            }
+        }
+        for said in [0.0, -80.0, f32::NAN, f32::INFINITY] {
+            file_of_white(&from, Some(said));
+            let photo = read(&from).unwrap();
+            assert!(white(&photo).is_none() && photo.source.notes[0].contains("whiteLuminance"), "{said}");
+            let file = ReadOptions { white_luminance: Some(WhiteLuminance::File), ..ReadOptions::default() };
+            let refused = read_with(&from, &file).unwrap_err().to_string();
+            assert!(refused.contains("from.exr") && refused.contains("whiteLuminance"), "{refused}");
         }
     }
 

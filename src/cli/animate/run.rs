@@ -108,7 +108,9 @@ fn of_camera<'a>(
         ));
     }
     let place = if lit {
-        Place::Lit(Surroundings::read(path, &args.reading.of_white(args.veil.white_luminance()), args.hood, look)?.into())
+        Place::Lit(
+            Surroundings::read(path, &args.reading.of_white(args.veil.white_luminance()), args.hood, look)?.into(),
+        )
     } else {
         Place::Dark(panorama(args, path)?.into())
     };

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::{Args, map};
 use super::outputs::{Paths, glare_options, picture_options};
+use super::{Args, map};
 use crate::Result;
 use crate::cli::luminance::Extent;
 use crate::cli::surroundings::{Seen, StrayTold};
@@ -51,7 +51,8 @@ impl<'a> Job<'a, Found<'a>> {
     /// Those of [`photo::read`] and [`Job::found`].
     pub fn read(args: &'a Args, paths: &'a Paths, look: &'a Look) -> Result<Self> {
         let mut stages = Stages::default();
-        let photo = stages.time("read", || photo::read_with(&paths.input, &args.reading.of_white(args.veil.white_luminance())))?;
+        let photo = stages
+            .time("read", || photo::read_with(&paths.input, &args.reading.of_white(args.veil.white_luminance())))?;
         Self::found(args, paths, look, photo, stages)
     }
 
@@ -132,7 +133,7 @@ impl Job<'_, Done<'_>> {
         }
         stages.time("write", || {
             if let (Some(path), Some(glare)) = (&paths.map, glare.as_ref()) {
-                map::write(path, &paths.input, glare, args.force)?;
+                map::write(path, &paths.input, glare, args.output_options.map_range, args.force)?;
             }
             if let (Some(path), Some(glare)) = (&paths.glare, glare.take()) {
                 photo::write(path, &glare, &glare_options(args, path))?;

@@ -25,6 +25,7 @@ use crate::options::FindArgs;
 use crate::options::ReadArgs;
 use crate::options::SceneArgs;
 use crate::options::VeilArgs;
+use crate::options::numbers::range;
 use crate::{Result, limits};
 
 use look::LookArgs;
@@ -199,6 +200,10 @@ struct OutputArgs {
     /// the file says what the photo's numbers are, else in its numbers. .png or .svg; for several photos a pattern, like OUTPUT
     #[arg(long, value_name = "FILE")]
     map: Option<PathBuf>,
+
+    /// The ends of that scale, so that several maps share one [default: what the glare spans, five decades at most]
+    #[arg(long, value_name = "FROM,TO", requires = "map", value_parser = range, allow_hyphen_values = true)]
+    map_range: Option<[f64; 2]>,
 
     /// Write what was computed, how, how exactly and how fast, as JSON; one file for all photos
     #[arg(long, value_name = "FILE")]

@@ -178,7 +178,8 @@ pub fn run(args: &Args) -> Result<()> {
     let progress = Progress::start(args.quiet);
     let mut stages = Stages::default();
     progress.step(Step::Reading);
-    let photo = stages.time("read", || photo::read_with(&args.input, &args.reading.of_white(args.model.white_luminance())))?;
+    let photo =
+        stages.time("read", || photo::read_with(&args.input, &args.reading.of_white(args.model.white_luminance())))?;
     args.check(&photo)?;
     let facts = photo.facts();
     let scale = photo.luminance_scale();

@@ -193,7 +193,7 @@ fn source(layer: &Layer, headers: &[Header], options: &ReadOptions) -> (Source, 
 /// cd/m² of (1, 1, 1) by `whiteLuminance`, one of OpenEXR's standard attributes, where the part has it.
 fn luminance(header: &Header) -> Option<Said> {
     let white = header.own_attributes.white_luminance?;
-    Some(Said::of_white(white.into(), format!("its whiteLuminance, {white},")))
+    Some(Said::of_white(white.into(), format!("its whiteLuminance of {white}")))
 }
 
 pub(super) fn primaries(c: Chromaticities) -> Primaries {

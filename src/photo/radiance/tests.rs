@@ -168,7 +168,8 @@ fn luminance_is_179_over_the_exposures_and_kept() {
 
 #[test]
 fn exposures_that_are_none_tell_nothing() {
-    for header in ["EXPOSURE=0\n", "EXPOSURE=-1\nEXPOSURE=-1\n", "EXPOSURE=x\n", "EXPOSURE=nan\n", "COLORCORR=1 0 1\n"] {
+    for header in ["EXPOSURE=0\n", "EXPOSURE=-1\nEXPOSURE=-1\n", "EXPOSURE=x\n", "EXPOSURE=nan\n", "COLORCORR=1 0 1\n"]
+    {
         let photo = settled(header, None).unwrap();
         assert_eq!(photo.luminance_scale(), None, "{header}");
         assert!(photo.source.notes[0].contains("EXPOSURE or COLORCORR"), "{header}: {:?}", photo.source.notes);
