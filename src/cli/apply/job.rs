@@ -79,7 +79,7 @@ impl<'a> Job<'a, Found<'a>> {
             glare: paths.glare.is_some()
                 || paths.map.is_some()
                 || args.surroundings.environment.is_some()
-                || luminance.is_some(),
+                || luminance.is_some() && (args.output_options.report.is_some() || !args.quiet),
             times: args.verbose || args.output_options.report.is_some() || work.look.accuracy.goal.budget().is_some(),
             verify: args.proof.verify,
         };
