@@ -124,7 +124,7 @@ impl Sheet {
         let [left, top] = at.map(f64::from);
         let [right, bottom] = [left + f64::from(BAR), top + f64::from(height)];
         self.line(vec![[left, top], [right, top], [right, bottom], [left, bottom], [left, top]], INK, 1.0);
-        for tick in Scale::new(axis, std::iter::empty()).ticks((height / 50).max(2) as usize) {
+        for tick in Scale::new(axis, std::iter::empty()).ticks((height / 30).max(2) as usize) {
             let y = bottom - tick.place * (bottom - top);
             let length = if tick.label.is_some() { 6.0 } else { 3.0 };
             self.line(vec![[right, y], [right + length, y]], INK, 1.0);

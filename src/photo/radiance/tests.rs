@@ -156,9 +156,10 @@ fn luminance_is_179_over_the_exposures_and_kept() {
     // Of XYZ, Y is luminance; the written file is of RGB again.
     let photo = settled("FORMAT=32-bit_rle_xyze\nEXPOSURE=0.5\n", None).unwrap();
     let y = 2.0 * 64.0 / 256.0;
-    for photo in [&photo, &written_and_read(&photo)] {
+    // RGBE has eight bits for the brightest of a pixel's colours, here blue.
+    for (photo, off) in [(&photo, 1e-3), (&written_and_read(&photo), 0.04)] {
         let got = photo.luminance_scale().unwrap().of(&photo.pixels[5]);
-        assert!((got / y - 1.0).abs() < 0.01, "{got} for {y}");
+        assert!((got / y - 1.0).abs() < off, "{got} for {y}");
     }
     // Given, it replaces what the header said.
     let photo = settled("EXPOSURE=4\nCOLORCORR=1 2 1\n", Some(WhiteLuminance::Given(50.0))).unwrap();

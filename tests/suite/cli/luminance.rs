@@ -47,7 +47,7 @@ fn photo_and_glare_are_told_and_drawn_in_candelas() {
     place.vglare(&[&line[..], &VEIL[2..]].concat()).succeeded();
     let clean = &place.read_json("clean.json")["luminance"];
     let mean = report["luminance"]["photo"]["mean"].as_f64().unwrap();
-    assert!((clean["clean"]["mean"].as_f64().unwrap() / mean - 1.0).abs() < 1e-3, "{clean}");
+    assert!((clean["clean"]["mean"].as_f64().unwrap() / mean - 1.0).abs() < 5e-3, "{clean}");
     let hdr = photo::read(&place.path("clean.hdr")).unwrap().luminance_scale().unwrap();
     assert!((hdr.cd_m2_per_unit - 250.0).abs() < 1e-9 && hdr.from.contains("EXPOSURE of 0.716"), "{}", hdr.from);
 }
@@ -107,7 +107,7 @@ fn a_chart_and_its_photo_have_the_same_luminances() {
     assert!(told["field_cd_m2"] == 2000.0 && (1500.0..2000.0).contains(&field), "{spot}");
     assert!((dark / field / number(&spot["index"][1]) - 1.0).abs() < 1e-6, "{spot}");
     assert!(
-        place.json(&[&line[..4], &["--diameters", "4", "--json"], &VEIL].concat()[..])["spots"][0]
+        place.json(&[&line[..3], &["--diameters", "4", "--json"], &VEIL].concat()[..])["spots"][0]
             .get("spot_cd_m2")
             .is_none()
     );
