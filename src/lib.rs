@@ -39,7 +39,8 @@
 //! | `cli` | `cli` | the commands for photos |
 //! | `viewer` | `window` | the window: a photo with its glare, live |
 //! | `laboratory` | `laboratory` | experiments, charts, benches: what is measured and drawn instead of applied |
-//! | `false_colour` | `laboratory` or `window` | numbers → colours |
+//! | `chart` | `cli` or `laboratory` | numbers → charts, drawings and pictures in false colours |
+//! | `false_colour` | any of these | numbers → colours |
 //! | `options`, `terminal` | any of these | what commands share: options; printing, progress, signals |
 //!
 //! The program lists the commands of all three, in `src/program`.
@@ -50,13 +51,15 @@
 mod calibration;
 pub mod certificate;
 mod chance;
+#[cfg(feature = "chart")]
+pub mod chart;
 pub mod choices;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod compare;
 pub mod environment;
 pub mod error;
-#[cfg(any(feature = "laboratory", feature = "window"))]
+#[cfg(any(feature = "chart", feature = "window"))]
 pub mod false_colour;
 mod fast_length;
 pub mod frame;

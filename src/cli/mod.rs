@@ -6,6 +6,7 @@ mod encoding;
 mod found;
 pub mod info;
 pub mod lights;
+mod luminance;
 pub mod plan;
 pub mod presets;
 pub mod remove;

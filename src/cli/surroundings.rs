@@ -131,6 +131,9 @@ impl Surroundings {
     }
 }
 
+/// What a photo and its surroundings may say differently of their white, relatively, and still count in one unit.
+const SAME_UNIT: f64 = 0.01;
+
 /// A photo amid what a camera sees.
 fn placed(photo: Photo, view: Photo) -> Result<Photo> {
     let refused = |why: &str| Err(Error::Usage(format!("--environment: {why}")));
@@ -139,6 +142,15 @@ fn placed(photo: Photo, view: Photo) -> Result<Photo> {
     }
     if photo.source.primaries != view.source.primaries {
         return refused("the photo and the panorama are of other primaries: --primaries says those of both");
+    }
+    if let (Some(one), Some(other)) = (photo.luminance_scale(), view.luminance_scale()) {
+        let [one, other] = [one, other].map(|scale| scale.cd_m2_per_unit);
+        if (one / other - 1.0).abs() > SAME_UNIT {
+            let why = format!(
+                "white is {one:.4} cd/m² in the photo and {other:.4} in the panorama: --luminance says it of both"
+            );
+            return refused(&why);
+        }
     }
     Ok(photo.surrounded(view))
 }

@@ -1,8 +1,7 @@
-//! The laboratory: what is measured and drawn instead of applied to photos.
+//! The laboratory: what is measured and drawn instead of applied to photos. [`chart`] draws it.
 //!
 //! | module | what it does |
 //! | --- | --- |
-//! | [`chart`] | numbers → charts and pictures in false colours |
 //! | `page` | a page of results, and the folder that it lies in |
 //! | [`rex`] | the research prototype's experiments, as figures and numbers |
 //! | [`tradeoff`] | a photo and its ghosts → accuracy against time, measured here |
@@ -15,7 +14,6 @@
 
 pub mod bench;
 pub mod calibrate;
-pub mod chart;
 pub mod harmonics;
 pub mod index;
 pub mod lens;
@@ -23,3 +21,5 @@ mod page;
 pub mod psf;
 pub mod rex;
 pub mod tradeoff;
+
+pub use crate::chart;

@@ -86,6 +86,7 @@ impl Panorama {
         let mut view = Photo::new(window.width, window.height, pixels);
         view.frame = Frame::full(columns, rows).with_window(window);
         view.source.primaries = self.photo.source.primaries;
+        view.source.luminance = self.photo.source.luminance.clone();
         view.source.display_referred = self.photo.source.display_referred;
         view
     }

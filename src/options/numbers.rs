@@ -50,6 +50,15 @@ pub fn angles(text: &str) -> Result<[f64; 3], String> {
     angles.ok_or_else(|| "expected three angles in degrees, like 90,0,-10".to_owned())
 }
 
+/// Two positive finite numbers, the smaller one first.
+pub fn range(text: &str) -> Result<[f64; 2], String> {
+    let ends: Vec<f64> = text.split(',').filter_map(|end| positive(end.trim()).ok()).collect();
+    match (ends[..].first_chunk(), text.split(',').count()) {
+        (Some(&[from, to]), 2) if from < to => Ok([from, to]),
+        _ => Err("expected two numbers above 0, the smaller one first, like 0.1,30".to_owned()),
+    }
+}
+
 /// Columns and rows, as 1920x1080.
 pub fn sides(text: &str) -> Result<[u32; 2], String> {
     const MOST: u32 = 32768;
@@ -67,6 +76,14 @@ mod tests {
         assert_eq!((sides("1920x1080"), sides("96 × 54")), (Ok([1920, 1080]), Ok([96, 54])));
         for bad in ["", "96", "0x54", "96x-1", "1e3x2", "40000x10", "96x54x3"] {
             assert!(sides(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn a_range_is_two_numbers_in_their_order() {
+        assert_eq!(range("0.1, 30"), Ok([0.1, 30.0]));
+        for bad in ["", "1", "2,1", "1,1", "0,1", "-1,1", "1,nan", "1,2,3"] {
+            assert!(range(bad).is_err(), "{bad}");
         }
     }
 

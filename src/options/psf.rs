@@ -2,8 +2,11 @@
 
 use std::path::PathBuf;
 
+use clap::ValueEnum as _;
+
 use crate::options::ApertureArgs;
-use crate::options::numbers::{colour, finite};
+use crate::options::numbers::{colour, finite, positive};
+use crate::photo::WhiteLuminance;
 use crate::psf::{Fault, Luminance, Name, Parameters};
 use crate::scene::absolute;
 use crate::{Error, Result};
@@ -21,7 +24,12 @@ pub struct PsfArgs {
 
     /// Of spencer: what the eye is adapted to [default: photopic]
     #[arg(long, value_enum)]
-    luminance: Option<Luminance>,
+    adaptation: Option<Luminance>,
+
+    /// What white, 1,1,1, of the photo is in cd/m²: a number above 0, or `file` for what the photo's file says, a Radiance picture by
+    /// its format, too [default: what the file names, if anything]. photopic, mesopic and scotopic are --adaptation's older spelling
+    #[arg(long, value_name = "CD_M2|file", allow_hyphen_values = true, value_parser = luminance)]
+    luminance: Option<LuminanceArg>,
 
     /// Of gaussian: the standard deviation, in the look's unit
     #[arg(long, value_name = "W", allow_hyphen_values = true, value_parser = finite)]
@@ -65,6 +73,29 @@ pub struct PsfArgs {
     scatter: Option<f64>,
 }
 
+/// `--luminance`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum LuminanceArg {
+    /// Of the photo's white.
+    White(WhiteLuminance),
+    /// What is now `--adaptation`.
+    Adaptation(Luminance),
+}
+
+fn luminance(text: &str) -> std::result::Result<LuminanceArg, String> {
+    if text == "file" {
+        return Ok(LuminanceArg::White(WhiteLuminance::File));
+    }
+    if let Ok(adaptation) = Luminance::from_str(text, false) {
+        return Ok(LuminanceArg::Adaptation(adaptation));
+    }
+    let number = positive(text).ok().filter(|&number| (number as f32).is_normal());
+    number.map(|number| LuminanceArg::White(WhiteLuminance::Given(number))).ok_or_else(|| {
+        "expected cd/m² of the photo's white, a positive finite number, or file (or photopic, mesopic, scotopic, as --adaptation has it)"
+            .to_owned()
+    })
+}
+
 /// `--abg`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Tail([f64; 3], Option<f64>);
@@ -81,7 +112,7 @@ fn tail(text: &str) -> std::result::Result<Tail, String> {
 impl PsfArgs {
     /// What is given wins over what was said before.
     pub fn over(&self, before: Parameters, aperture: &ApertureArgs) -> Parameters {
-        let Self { age, pigment, luminance, width, widths, weights, tints, abg, table, kernel, .. } = self.clone();
+        let Self { age, pigment, width, widths, weights, tints, abg, table, kernel, .. } = self.clone();
         let Self { rotation, roundness, scatter, .. } = *self;
         // Those of other functions may be a lens's.
         let ApertureArgs { fstop, blades, sensor } = match before.psf {
@@ -95,7 +126,7 @@ impl PsfArgs {
             psf: before.psf,
             age: age.or(before.age),
             pigment: pigment.or(before.pigment),
-            luminance: luminance.or(before.luminance),
+            luminance: self.adaptation().or(before.luminance),
             width: width.or(before.width),
             widths: widths.or(before.widths),
             weights: weights.or(before.weights),
@@ -115,12 +146,28 @@ impl PsfArgs {
         }
     }
 
-    /// Whether nothing is given.
+    /// What the eye is adapted to, by either spelling.
+    fn adaptation(&self) -> Option<Luminance> {
+        self.adaptation.or(match self.luminance {
+            Some(LuminanceArg::Adaptation(adaptation)) => Some(adaptation),
+            _ => None,
+        })
+    }
+
+    /// What the photo's white is in cd/m², where that is given.
+    pub fn white_luminance(&self) -> Option<WhiteLuminance> {
+        match self.luminance {
+            Some(LuminanceArg::White(white)) => Some(white),
+            _ => None,
+        }
+    }
+
+    /// Whether nothing is given of a function.
     pub fn is_empty(&self) -> bool {
-        let Self { age, pigment, luminance, width, widths, weights, tints, abg, table, kernel, .. } = self;
+        let Self { age, pigment, width, widths, weights, tints, abg, table, kernel, .. } = self;
         let Self { rotation, roundness, scatter, .. } = self;
         [age, pigment, width, rotation, roundness, scatter].iter().all(|number| number.is_none())
-            && luminance.is_none()
+            && self.adaptation().is_none()
             && [widths, weights].iter().all(|list| list.is_none())
             && tints.is_none()
             && abg.is_none()
@@ -141,6 +188,7 @@ pub fn wrong(fault: &Fault) -> Error {
     let option = match fault.key {
         "a" | "b" | "g" | "end" => "abg",
         "psf" => "veil",
+        "luminance" => "adaptation",
         key => key,
     };
     Error::Usage(format!("--{option}: {}", fault.reason))
@@ -154,6 +202,26 @@ pub fn told<T>(result: std::result::Result<T, Fault>) -> Result<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_luminance_is_a_number_or_the_files_or_an_older_word() {
+        let white = |white| Ok(LuminanceArg::White(white));
+        assert_eq!(luminance("250"), white(WhiteLuminance::Given(250.0)));
+        assert_eq!(luminance("file"), white(WhiteLuminance::File));
+        assert_eq!(luminance("scotopic"), Ok(LuminanceArg::Adaptation(Luminance::Scotopic)));
+        for bad in ["", "0", "-1", "nan", "inf", "1e300", "1e-300", "bright", "File"] {
+            assert!(luminance(bad).is_err_and(|told| told.contains("cd/m²")), "{bad}");
+        }
+        let older = PsfArgs { luminance: Some(LuminanceArg::Adaptation(Luminance::Mesopic)), ..PsfArgs::default() };
+        let newer = PsfArgs { adaptation: Some(Luminance::Mesopic), ..PsfArgs::default() };
+        for args in [older, newer] {
+            let parameters = args.over(Parameters::new(Name::Spencer), &ApertureArgs::default());
+            assert_eq!((parameters.luminance, args.white_luminance()), (Some(Luminance::Mesopic), None));
+            assert!(!args.is_empty());
+        }
+        let scale = PsfArgs { luminance: Some(LuminanceArg::White(WhiteLuminance::File)), ..PsfArgs::default() };
+        assert!(scale.is_empty() && scale.white_luminance().is_some());
+    }
 
     #[test]
     fn a_tail_has_three_or_four_numbers() {

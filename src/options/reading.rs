@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use crate::Result;
 use crate::options::numbers::finite;
-use crate::photo::{Missing, Primaries, ReadOptions};
+use crate::photo::{Missing, Primaries, ReadOptions, WhiteLuminance};
 
 /// How photos are read.
 #[derive(Debug, Clone, Copy, clap::Args)]
@@ -36,13 +36,19 @@ enum MissingArg {
 }
 
 impl ReadArgs {
+    /// The library's options, for a photo whose white is so many cd/m², where that is given.
+    pub fn of_white(self, white_luminance: Option<WhiteLuminance>) -> ReadOptions {
+        ReadOptions { white_luminance, ..self.options() }
+    }
+
     /// The library's options.
     pub fn options(self) -> ReadOptions {
         let missing = match self.missing {
             MissingArg::Refuse => Missing::Refuse,
             MissingArg::Zero => Missing::Zero,
         };
-        ReadOptions { missing, primaries: self.primaries, overscan: self.overscan.unwrap_or(0.0) }
+        let overscan = self.overscan.unwrap_or(0.0);
+        ReadOptions { missing, primaries: self.primaries, overscan, ..ReadOptions::default() }
     }
 }
 

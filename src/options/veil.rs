@@ -9,6 +9,7 @@ use crate::choices::{Border, Projection};
 use crate::look::{Look, LookLens, Veil};
 use crate::options::psf::told;
 use crate::options::{ApertureArgs, PsfArgs};
+use crate::photo::WhiteLuminance;
 use crate::psf::{Name, Parameters};
 use crate::scene::VeilSection;
 use crate::{Error, Result};
@@ -132,6 +133,11 @@ impl VeilArgs {
             tolerance: tolerance.or(before),
         };
         Ok(Look { veil: Some(told(Veil::new(&section, adds))?), ..look })
+    }
+
+    /// What the photo's white is in cd/m², where that is given.
+    pub fn white_luminance(&self) -> Option<WhiteLuminance> {
+        self.psf.white_luminance()
     }
 
     /// The files that its function is read from.

@@ -33,7 +33,14 @@ fn colours(photo: &Photo, format: Format, display: bool) -> Option<String> {
 
 fn exposure(photo: &Photo, format: Format) -> Option<String> {
     let exposure = photo.source.radiance.as_ref()?.exposure();
-    (format != Format::Radiance && exposure != [1.0; 3]).then(|| {
+    // OpenEXR says what white is with it, where one number says that.
+    let kept = match format {
+        Format::Radiance => true,
+        Format::OpenExr => photo.source.luminance.as_ref().is_some_and(|said| said.white().is_some()),
+        _ => false,
+    };
+    let is_one = exposure == [1.0; 3] || exposure.iter().any(|factor| factor.is_nan());
+    (!kept && !is_one).then(|| {
         let [r, g, b] = exposure;
         let value = if r == g && r == b { format!("{r}") } else { format!("{r} {g} {b}") };
         format!("the photo's EXPOSURE of {value} is lost: its pixels are written as they stand, multiplied by it")

@@ -12,6 +12,8 @@
 //! photo's colours is told by [`lost()`]. Pictures for displays are written as sRGB, and say so.
 //! A JPEG with a gain map (Ultra HDR) is brightened by it, and counts as scene-linear light of Rec.709 primaries.
 //!
+//! What a number is in cd/m² is known where a person or the file says it: [`Photo::luminance_scale`].
+//!
 //! # Alpha
 //!
 //! Alpha is carried as it is and written back bit for bit at the same depth. OpenEXR's is premultiplied; PNG's and
@@ -36,6 +38,7 @@ mod format;
 mod icc;
 mod jpeg;
 mod lost;
+mod luminance;
 mod pfm;
 mod png;
 mod primaries;
@@ -56,6 +59,7 @@ pub use bad::{BadKind, BadPixels, survey};
 pub use camera::View;
 pub use format::{Depth, Format};
 pub use lost::lost;
+pub use luminance::{LuminanceScale, WhiteLuminance};
 pub use primaries::Primaries;
 pub use read::{MAX_PIXELS, Missing, ReadOptions, read, read_with};
 pub(crate) use shown::Shown;
@@ -117,6 +121,8 @@ pub struct Source {
     pub notes: Vec<String>,
     /// Columns and rows beyond each edge of the picture that are pixels of the file's: see [`ReadOptions::overscan`].
     overscan: [u32; 2],
+    /// What is known of its numbers in cd/m²; [`Photo::luminance_scale`] tells it.
+    pub(crate) luminance: Option<luminance::Said>,
     /// What it says of the camera; [`Photo::view`] tells what follows.
     camera: Option<camera::Camera>,
     /// Whether it is more to be written fast than small.
@@ -155,6 +161,7 @@ impl Source {
             space: None,
             notes: Vec::new(),
             overscan: [0; 2],
+            luminance: None,
             camera: None,
             quick: false,
             exr: None,
@@ -182,10 +189,11 @@ impl Photo {
     /// If there are not as many pixels as the window holds.
     pub fn companion(&self, pixels: Vec<[f32; 4]>) -> Self {
         assert_eq!(pixels.len(), self.frame.window.pixels(), "a photo needs as many pixels as its window");
-        let Source { primaries, pixel_aspect, radiance, exr, .. } = &self.source;
+        let Source { primaries, pixel_aspect, luminance, radiance, exr, .. } = &self.source;
         let exr = exr.as_ref().map(|rest| Arc::new(rest.attributes_only(*primaries)));
         let (primaries, pixel_aspect, radiance) = (*primaries, *pixel_aspect, radiance.clone());
-        let source = Source { primaries, pixel_aspect, radiance, quick: true, exr, ..Source::plain() };
+        let luminance = luminance.clone();
+        let source = Source { primaries, pixel_aspect, luminance, radiance, quick: true, exr, ..Source::plain() };
         Self { frame: self.frame, pixels, source }
     }
 

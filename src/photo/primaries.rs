@@ -52,7 +52,7 @@ impl Primaries {
     ];
 
     /// What people call these primaries, where they have a name (to three decimals, as files round them).
-    pub(super) fn title(self) -> Option<&'static str> {
+    pub(crate) fn title(self) -> Option<&'static str> {
         const TITLES: [&str; 8] = [
             "Rec. 709",
             "Display P3",

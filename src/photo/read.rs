@@ -5,7 +5,7 @@ use std::io::{self, BufRead, BufReader, Cursor, Read, Seek};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use super::{Format, Photo, Primaries, Reason, exr, jpeg, pfm, png, radiance, tiff};
+use super::{Format, Photo, Primaries, Reason, WhiteLuminance, exr, jpeg, luminance, pfm, png, radiance, tiff};
 use crate::error::{Error, Result};
 use crate::frame::Frame;
 
@@ -29,6 +29,8 @@ pub struct ReadOptions {
     pub missing: Missing,
     /// The primaries of the file's numbers, whatever the file says of them.
     pub primaries: Option<Primaries>,
+    /// What white is in cd/m²; without it what the file itself says, if anything.
+    pub white_luminance: Option<WhiteLuminance>,
     /// What part of the file's width and height lies beyond each edge of the picture, from 0 to less than 1/2: pixels there are stored,
     /// and shine, but are none of the picture.
     pub overscan: f64,
@@ -59,6 +61,7 @@ pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Photo> {
         {
             photo.source.primaries = primaries.other_than_rec709();
         }
+        luminance::settle(&mut photo, options.white_luminance)?;
         shape_pixels(&mut photo);
         overscanned(&mut photo, options.overscan);
         Ok(photo)

@@ -11,6 +11,7 @@ mod interrupted;
 mod lens;
 mod lights;
 mod look;
+mod luminance;
 mod measure;
 mod outputs;
 mod panics;

@@ -28,7 +28,7 @@ const IMPURE: [&str; 9] = ["gpu", "renderer", "measure", "egui", "egui_glow", "g
 /// The rooms on top of the core; none knows another.
 const ROOMS: [&str; 3] = ["cli", "laboratory", "viewer"];
 /// What the rooms share: it knows none of them, and the core knows none of it.
-const SHARED: [&str; 3] = ["false_colour", "options", "terminal"];
+const SHARED: [&str; 4] = ["chart", "false_colour", "options", "terminal"];
 /// In `src/`, but of the program, which knows all.
 const PROGRAM: [&str; 3] = ["lib", "main", "program"];
 

@@ -69,7 +69,7 @@ fn of_lights<'a>(
     }
     args.scene.unit.check(look)?;
     let photo = match &args.photo {
-        Some(path) => photo::read_with(path, &args.reading.options())?,
+        Some(path) => photo::read_with(path, &args.reading.of_white(args.veil.white_luminance()))?,
         None => black(args.sides()),
     };
     paths[0].check(args, &photo)?;
@@ -108,7 +108,9 @@ fn of_camera<'a>(
         ));
     }
     let place = if lit {
-        Place::Lit(Surroundings::read(path, &args.reading.options(), args.hood, look)?.into())
+        Place::Lit(
+            Surroundings::read(path, &args.reading.of_white(args.veil.white_luminance()), args.hood, look)?.into(),
+        )
     } else {
         Place::Dark(panorama(args, path)?.into())
     };
@@ -143,7 +145,7 @@ enum Place {
 }
 
 fn panorama(args: &Args, path: &Path) -> Result<Panorama> {
-    let options = photo::ReadOptions { overscan: 0.0, ..args.reading.options() };
+    let options = photo::ReadOptions { overscan: 0.0, ..args.reading.of_white(args.veil.white_luminance()) };
     let photo = photo::read_with(path, &options)?;
     Panorama::new(photo).map_err(|reason| Error::read_photo(path, reason))
 }

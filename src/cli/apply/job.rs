@@ -1,14 +1,17 @@
 //! What is done with one photo: read, lay the look over it, write.
 
-use super::Args;
+use serde::Serialize;
+
 use super::outputs::{Paths, glare_options, picture_options};
+use super::{Args, map};
 use crate::Result;
+use crate::cli::luminance::Extent;
 use crate::cli::surroundings::{Seen, StrayTold};
 use crate::frame::Frame;
 use crate::gpu::Device;
 use crate::job::{Computer, Done, Found, Stages, Wanted};
 use crate::look::Look;
-use crate::photo::{self, Photo};
+use crate::photo::{self, LuminanceScale, Photo};
 use crate::terminal::progress::Progress;
 
 /// A photo, its files, and what a run has come to know of it: [`Found`], then [`Done`].
@@ -18,6 +21,27 @@ pub struct Job<'a, Work> {
     pub work: Work,
     /// What light from outside the frame did.
     pub outside: Option<StrayTold>,
+    /// What the photo's numbers are in cd/m², where that is known.
+    pub luminance: Option<Luminance>,
+}
+
+/// A photo and its glare in cd/m².
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Luminance {
+    /// What makes that of their numbers.
+    #[serde(flatten)]
+    pub scale: LuminanceScale,
+    /// Of the photo as it was read.
+    pub photo: Option<Extent>,
+    /// Of all that was added.
+    pub glare: Option<Extent>,
+}
+
+impl Luminance {
+    fn new(photo: &Photo) -> Option<Self> {
+        let scale = photo.luminance_scale()?;
+        Some(Self { photo: Extent::of(photo, &scale), glare: None, scale })
+    }
 }
 
 impl<'a> Job<'a, Found<'a>> {
@@ -27,7 +51,8 @@ impl<'a> Job<'a, Found<'a>> {
     /// Those of [`photo::read`] and [`Job::found`].
     pub fn read(args: &'a Args, paths: &'a Paths, look: &'a Look) -> Result<Self> {
         let mut stages = Stages::default();
-        let photo = stages.time("read", || photo::read_with(&paths.input, &args.reading.options()))?;
+        let photo = stages
+            .time("read", || photo::read_with(&paths.input, &args.reading.of_white(args.veil.white_luminance())))?;
         Self::found(args, paths, look, photo, stages)
     }
 
@@ -37,7 +62,8 @@ impl<'a> Job<'a, Found<'a>> {
     /// Those of [`Paths::check`] and [`Found::new`].
     pub fn found(args: &'a Args, paths: &'a Paths, look: &'a Look, photo: Photo, stages: Stages) -> Result<Self> {
         paths.check(args, &photo)?;
-        Ok(Self { args, paths, work: Found::new(look, photo, stages)?, outside: None })
+        let luminance = Luminance::new(&photo);
+        Ok(Self { args, paths, work: Found::new(look, photo, stages)?, outside: None, luminance })
     }
 
     /// Lays the glare over the photo; without a computer there is none.
@@ -45,16 +71,19 @@ impl<'a> Job<'a, Found<'a>> {
     /// # Errors
     /// Those of [`Found::compute`].
     pub fn compute(self, computer: Option<&mut Computer>, progress: &Progress) -> Result<Job<'a, Done<'a>>> {
-        let Self { args, paths, work, outside } = self;
+        let Self { args, paths, work, outside, luminance } = self;
         let wanted = Wanted {
             // A report alone tells of a picture that nobody keeps.
             picture: paths.output.is_some() || paths.glare.is_none(),
-            // What comes from outside is told as a share of it.
-            glare: paths.glare.is_some() || args.surroundings.environment.is_some(),
+            // What comes from outside is told as a share of it, and all of it in cd/m².
+            glare: paths.glare.is_some()
+                || paths.map.is_some()
+                || args.surroundings.environment.is_some()
+                || luminance.is_some() && (args.output_options.report.is_some() || !args.quiet),
             times: args.verbose || args.output_options.report.is_some() || work.look.accuracy.goal.budget().is_some(),
             verify: args.proof.verify,
         };
-        Ok(Job { args, paths, work: work.compute(computer, wanted, progress)?, outside })
+        Ok(Job { args, paths, work: work.compute(computer, wanted, progress)?, outside, luminance })
     }
 }
 
@@ -84,10 +113,10 @@ impl Job<'_, Done<'_>> {
         self.outside.as_ref().and_then(|outside| outside.error).map_or(Ok(()), |error| error.check())
     }
 
-    /// Writes what is asked for: the picture, the glare alone.
+    /// Writes what is asked for: the picture, the glare alone and its map.
     ///
     /// # Errors
-    /// Those of [`photo::write`].
+    /// Those of [`photo::write`] and [`map::write`].
     pub fn write(mut self) -> Result<Self> {
         let (args, paths) = (self.args, self.paths);
         let picture = paths.output.as_ref().zip(self.work.picture.as_ref());
@@ -99,7 +128,13 @@ impl Job<'_, Done<'_>> {
             self.work.warnings.extend(lost.into_iter().chain(beyond));
         }
         let Done { picture, glare, stages, .. } = &mut self.work;
+        if let (Some(Luminance { scale, glare: told, .. }), Some(glare)) = (&mut self.luminance, glare.as_ref()) {
+            *told = Extent::of(glare, scale);
+        }
         stages.time("write", || {
+            if let (Some(path), Some(glare)) = (&paths.map, glare.as_ref()) {
+                map::write(path, &paths.input, glare, args.output_options.map_range, args.force)?;
+            }
             if let (Some(path), Some(glare)) = (&paths.glare, glare.take()) {
                 photo::write(path, &glare, &glare_options(args, path))?;
             }

@@ -3,6 +3,7 @@
 mod fault;
 mod job;
 pub(super) mod look;
+mod map;
 pub(super) mod names;
 pub(super) mod outputs;
 pub(super) mod pipeline;
@@ -24,6 +25,7 @@ use crate::options::FindArgs;
 use crate::options::ReadArgs;
 use crate::options::SceneArgs;
 use crate::options::VeilArgs;
+use crate::options::numbers::range;
 use crate::{Result, limits};
 
 use look::LookArgs;
@@ -53,8 +55,9 @@ pub struct Args {
     /// name: #### or %04d becomes the frame number, the last number in the photo's name, with at least four digits (so do
     /// ## or %02d with two, and %d with as many as it has); {name} becomes the photo's name without its extension. One #
     /// alone stays what it is. The number of shot.-001.exr and shot_-1.exr is -1, whose sign counts as a digit, and that of
-    /// shot-001.exr is 1. Where --glare or --report is given, OUTPUT may be left out.
-    #[arg(short, long, required_unless_present_any = ["glare", "report"])]
+    /// shot-001.exr is 1. Where --glare, --map or --report is given, OUTPUT may be
+    /// left out.
+    #[arg(short, long, required_unless_present_any = ["glare", "map", "report"])]
     output: Option<PathBuf>,
 
     /// Replace files that exist
@@ -110,6 +113,7 @@ Examples:
   vglare apply night.exr -o veiled.exr --veil cie --age 60 --fov 50 --projection planar --lens none
   vglare apply night.exr -o veiled.exr --veil cie --environment street.exr --view 20,5,0 --fov 60
   vglare apply --environment street.exr --view 20,5,0 --fov 60 --frame 960x540 -o out.exr --veil cie
+  vglare apply night.exr --map veil.png --veil cie --fov 50 --lens none --luminance 250
   vglare apply night.exr -o veiled.exr --budget 20 --verify full
   vglare apply night.exr --glare glare.exr --depth half
   vglare apply shot.*.exr -o veiled/
@@ -191,6 +195,15 @@ struct OutputArgs {
     /// For several photos a folder or a pattern, like OUTPUT
     #[arg(long, value_name = "FILE")]
     glare: Option<PathBuf>,
+
+    /// Draw the luminance of all that was added in false colours, on a logarithmic scale with a legend: in cd/m² where --luminance or
+    /// the file says what the photo's numbers are, else in its numbers. .png or .svg; for several photos a pattern, like OUTPUT
+    #[arg(long, value_name = "FILE")]
+    map: Option<PathBuf>,
+
+    /// The ends of that scale, so that several maps share one [default: what the glare spans, five decades at most]
+    #[arg(long, value_name = "FROM,TO", requires = "map", value_parser = range, allow_hyphen_values = true)]
+    map_range: Option<[f64; 2]>,
 
     /// Write what was computed, how, how exactly and how fast, as JSON; one file for all photos
     #[arg(long, value_name = "FILE")]

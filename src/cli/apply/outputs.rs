@@ -3,11 +3,15 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use super::Args;
 use super::names::Names;
+use super::{Args, OutputArgs};
+use crate::chart::Kind;
 use crate::photo::{self, Photo, WriteOptions};
 use crate::target::{self, Identity};
 use crate::{Error, Result};
+
+/// The option that names a photo's picture, which alone may replace it.
+const PICTURE: &str = "--output";
 
 /// A photo and the files that it becomes.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,25 +19,38 @@ pub struct Paths {
     pub input: PathBuf,
     pub output: Option<PathBuf>,
     pub glare: Option<PathBuf>,
+    /// A drawing.
+    pub map: Option<PathBuf>,
 }
 
 /// Several photos, and where their pictures go.
 pub struct Sequence {
     pub frames: Vec<Paths>,
-    /// The folder that the pictures go to, or else the glare alone; none where there is a report only.
+    /// The folder that the pictures go to, or else the glare alone or its maps; none where there is a report only.
     pub place: Option<PathBuf>,
 }
 
 impl Paths {
     /// Those of a single photo, as they were given.
     fn single(args: &Args) -> Self {
-        let glare = args.output_options.glare.clone();
-        Self { input: args.photos()[0].clone(), output: args.output.clone(), glare }
+        let OutputArgs { glare, map, .. } = &args.output_options;
+        Self { input: args.photos()[0].clone(), output: args.output.clone(), glare: glare.clone(), map: map.clone() }
     }
 
-    /// The files that the photo becomes.
-    pub fn pictures(&self) -> impl Iterator<Item = &PathBuf> {
+    /// The pictures that the photo becomes.
+    fn pictures(&self) -> impl Iterator<Item = &PathBuf> {
         self.output.iter().chain(&self.glare)
+    }
+
+    /// All files that the photo becomes, each with the option that names it.
+    fn options(&self) -> impl Iterator<Item = (&'static str, &PathBuf)> {
+        let all = [(PICTURE, &self.output), ("--glare", &self.glare), ("--map", &self.map)];
+        all.into_iter().filter_map(|(option, path)| Some((option, path.as_ref()?)))
+    }
+
+    /// All files that the photo becomes.
+    pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        self.options().map(|(_, path)| path)
     }
 
     /// Everything that could keep the results from being written, before the work begins.
@@ -48,10 +65,7 @@ impl Paths {
             let glare = photo.companion(vec![[0.0; 4]; photo.frame.window.pixels()]);
             photo::check_target(path, &glare, &glare_options(args, path))?;
         }
-        match &args.output_options.report {
-            Some(path) => target::check(path, args.force),
-            None => Ok(()),
-        }
+        self.map.iter().chain(&args.output_options.report).try_for_each(|path| target::check(path, args.force))
     }
 
     /// Makes the folders of the results.
@@ -59,7 +73,7 @@ impl Paths {
     /// # Errors
     /// [`Error::Write`] where the system refuses.
     pub fn make_folders(&self) -> Result<()> {
-        self.pictures().filter_map(|path| path.parent()).try_for_each(target::make_folder)
+        self.files().filter_map(|path| path.parent()).try_for_each(target::make_folder)
     }
 }
 
@@ -98,29 +112,33 @@ pub fn work(args: &Args) -> Result<Work> {
     };
     let pictures = names(args.output.as_deref(), "--output")?;
     let glare = names(args.output_options.glare.as_deref(), "--glare")?;
+    let maps = names(args.output_options.map.as_deref(), "--map")?;
+    let all = || pictures.iter().chain(&glare).chain(&maps);
     let is_file = |names: &Names| matches!(names, Names::File(_));
-    if !several && pictures.iter().chain(&glare).all(is_file) {
+    if !several && all().all(is_file) {
         let paths = Paths::single(args);
+        paths.map.iter().try_for_each(|path| Kind::of(path).map(drop))?;
         apart(args, std::slice::from_ref(&paths))?;
         return Ok(Work::Single(paths));
     }
     let frame = |input: &PathBuf| {
         let of = |names: &Option<Names>| names.as_ref().map(|names| names.of(input)).transpose();
-        Ok(Paths { input: input.clone(), output: of(&pictures)?, glare: of(&glare)? })
+        Ok(Paths { input: input.clone(), output: of(&pictures)?, glare: of(&glare)?, map: of(&maps)? })
     };
     let frames = args.photos().iter().map(frame).collect::<Result<Vec<_>>>()?;
     apart(args, &frames)?;
-    pictures.iter().chain(&glare).try_for_each(|names| room(names.place()))?;
-    for path in frames.iter().flat_map(Paths::pictures) {
-        photo::check_name(path)?;
-        if path.is_file() && !args.force {
+    all().try_for_each(|names| room(names.place()))?;
+    for frame in &frames {
+        frame.pictures().try_for_each(|path| photo::check_name(path))?;
+        frame.map.iter().try_for_each(|path| Kind::of(path).map(drop))?;
+        if let Some(path) = frame.files().find(|path| path.is_file() && !args.force) {
             return Err(Error::Exists { path: path.clone() });
         }
     }
     if let Some(path) = &args.output_options.report {
         target::check(path, args.force)?;
     }
-    let place = pictures.as_ref().or(glare.as_ref()).map(|names| names.place().to_owned());
+    let place = all().next().map(|names| names.place().to_owned());
     Ok(Work::Sequence(Sequence { frames, place }))
 }
 
@@ -154,21 +172,21 @@ pub(in crate::cli) fn room(folder: &Path) -> Result<()> {
 /// Whether every output is a file of its own, and nothing that is read. Only a picture may replace the photo that it was
 /// made of.
 fn apart(args: &Args, frames: &[Paths]) -> Result<()> {
-    // By which frame each file is made, and whether it is its picture; by none, the report.
-    let mut makers: HashMap<Identity, Option<(usize, bool)>> = HashMap::new();
+    // By which frame each file is made, and for which option; by none, the report.
+    let mut makers: HashMap<Identity, Option<(usize, &str)>> = HashMap::new();
     let report = args.output_options.report.as_deref();
     if let Some(report) = report.and_then(Identity::of) {
         makers.insert(report, None);
     }
     let input = |index: usize| frames[index].input.display();
     for (index, frame) in frames.iter().enumerate() {
-        for path in frame.pictures() {
-            let maker = (index, Some(path) == frame.output.as_ref());
+        for (option, path) in frame.options() {
+            let maker = (index, option);
             let Some(other) = Identity::of(path).and_then(|file| makers.insert(file, Some(maker))) else { continue };
             let (path, this) = (path.display(), input(index));
             return Err(Error::Usage(match other {
                 Some((other, _)) if other != index => format!("{} and {this} would both become {path}", input(other)),
-                _ => format!("--output, --glare and --report need a file each, and {path} would be two of them"),
+                _ => format!("--output, --glare, --map and --report need a file each, and {path} would be two of them"),
             }));
         }
     }
@@ -179,7 +197,9 @@ fn apart(args: &Args, frames: &[Paths]) -> Result<()> {
             Some(Some((maker, _))) if maker != index => {
                 return Err(Error::Usage(format!("the output of {} would replace {this}, a photo too", input(maker))));
             }
-            Some(Some((_, false))) => return Err(Error::Usage(format!("--glare would replace {this}, the photo"))),
+            Some(Some((_, option))) if option != PICTURE => {
+                return Err(Error::Usage(format!("{option} would replace {this}, the photo")));
+            }
             Some(None) => return Err(Error::Usage(format!("--report would replace {this}, a photo"))),
             _ => {}
         }
@@ -188,8 +208,7 @@ fn apart(args: &Args, frames: &[Paths]) -> Result<()> {
         let option = match maker(&path) {
             None => continue,
             Some(None) => "--report",
-            Some(Some((_, true))) => "--output",
-            Some(Some((_, false))) => "--glare",
+            Some(Some((_, option))) => option,
         };
         return Err(Error::Usage(format!("{option} would replace {}, which the scene is read from", path.display())));
     }

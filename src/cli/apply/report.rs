@@ -1,9 +1,11 @@
 //! The report: what was computed, how, how exactly and how fast.
 
+use std::path::PathBuf;
+
 use glam::DVec2;
 use serde::Serialize;
 
-use super::job::Job;
+use super::job::{Job, Luminance};
 use crate::certificate::Certificate;
 use crate::choices::{LengthUnit, LightBy, Mix, Normalize, Sources};
 use crate::cli::lights::FirefliesJson;
@@ -23,6 +25,7 @@ pub struct Report<'a> {
     input: PhotoReport,
     output: Option<String>,
     glare: Option<String>,
+    map: Option<String>,
     scene: SceneReport<'a>,
     unit: UnitReport,
     strength: f64,
@@ -35,6 +38,9 @@ pub struct Report<'a> {
     /// What light from outside the frame did.
     #[serde(skip_serializing_if = "Option::is_none")]
     surroundings: Option<&'a StrayTold>,
+    /// Photo and glare in cd/m², where the photo's numbers are known to be any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    luminance: Option<&'a Luminance>,
     plan: Option<&'a Plan>,
     cost: Option<CostReport<'a>>,
     notes: &'a [String],
@@ -138,7 +144,8 @@ pub struct Stage {
 
 impl<'a> Report<'a> {
     pub fn new(job: &'a Job<'_, Done<'_>>) -> Self {
-        let Job { args: _, paths, work, outside } = job;
+        let Job { args: _, paths, work, outside, luminance } = job;
+        let shown = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
         // What a look has new is to be told, too.
         let &Look {
             description: _,
@@ -161,8 +168,9 @@ impl<'a> Report<'a> {
         Self {
             vglare: env!("CARGO_PKG_VERSION"),
             input: photo_report(job),
-            output: paths.output.as_ref().map(|path| path.display().to_string()),
-            glare: paths.glare.as_ref().map(|path| path.display().to_string()),
+            output: shown(&paths.output),
+            glare: shown(&paths.glare),
+            map: shown(&paths.map),
             scene: scene_report(&work.scene, lens, axis),
             unit: UnitReport { name: unit, pixels: work.frame.pixel_size().recip() },
             strength,
@@ -173,6 +181,7 @@ impl<'a> Report<'a> {
             recover: RecoverReport { asked: find.recover, done: work.scene.recovery.clone().unwrap_or_default() },
             veil: work.veiled.as_ref(),
             surroundings: outside.as_ref(),
+            luminance: luminance.as_ref(),
             plan: computed.map(|computed| &computed.planning.plan),
             cost: computed.map(|computed| cost_report(computed, accuracy.goal)),
             notes: computed.map_or(&[], |computed| &computed.planning.notes),

@@ -100,7 +100,7 @@ impl Laying<'_> {
 /// limited, one after the other: a driver does not survive it that another takes what it was just told to be there.
 fn read(args: &Args, paths: &Paths, look: &Look) -> Result<Ready> {
     let read = || {
-        let options = args.reading.options();
+        let options = args.reading.of_white(args.veil.white_luminance());
         let photo = (!args.inputs.is_empty()).then(|| photo::read_with(&paths.input, &options)).transpose()?;
         let around = args.surroundings.environment.as_ref();
         let around = around.map(|path| Surroundings::read(path, &options, args.surroundings.hood, look)).transpose()?;

@@ -2,13 +2,13 @@
 
 use std::io::{self, Write};
 
-use super::job::Job;
+use super::job::{Job, Luminance};
 use super::report::kind_name;
 use crate::Result;
 use crate::certificate::Verify;
 use crate::choices::{Border, LengthUnit, Processor};
-use crate::cli::found;
 use crate::cli::plan::text;
+use crate::cli::{found, luminance};
 use crate::job::{Computed, Done, EachPixel, VeilSeen, Veiled};
 use crate::look::{Gathered, Look, LookLens, LookLights};
 use crate::photo::Facts;
@@ -31,6 +31,9 @@ pub fn print(job: &Job<'_, Done<'_>>) -> Result<()> {
             veiled.notes.iter().try_for_each(|note| writeln!(out, "note     {note}"))?;
         }
         job.outside.iter().try_for_each(|outside| writeln!(out, "{outside}"))?;
+        if let Some(Luminance { scale, photo, glare }) = &job.luminance {
+            luminance::line(out, scale, [("photo", photo), ("glare", glare)])?;
+        }
         if let Some(computed) = &job.work.computed {
             about_plan(out, job, computed)?;
             computed.planning.notes.iter().try_for_each(|note| writeln!(out, "note     {note}"))?;
@@ -39,7 +42,7 @@ pub fn print(job: &Job<'_, Done<'_>>) -> Result<()> {
             about_times(out, job)?;
         }
         let total: f64 = job.work.stages.0.iter().map(|(_, ms)| ms).sum();
-        let written: Vec<_> = job.paths.pictures().map(|path| path.display().to_string()).collect();
+        let written: Vec<_> = job.paths.files().map(|path| path.display().to_string()).collect();
         match &written[..] {
             [] => writeln!(out, "done     in {:.2} s, without a picture", total * 1e-3),
             written => writeln!(out, "wrote    {} in {:.2} s", written.join(" and "), total * 1e-3),

@@ -236,7 +236,7 @@ impl<'a> Tally<'a> {
 /// A photo that was written, in a line.
 fn line(out: &mut dyn Write, job: &Job<'_, Done<'_>>) -> io::Result<()> {
     let (frame, scene) = (job.work.facts.frame, &job.work.scene);
-    let path = job.paths.pictures().next().unwrap_or(&job.paths.input);
+    let path = job.paths.files().next().unwrap_or(&job.paths.input);
     write!(out, "photo    {}: {} x {}, ", path.display(), frame.width, frame.height)?;
     if let Some(found) = &scene.found {
         write!(out, "{} lights at {:.4} and above, ", scene.lights.len(), found.threshold)?;

@@ -85,7 +85,7 @@ pub fn run(args: &Args) -> Result<()> {
     args.scene.unit.check(&look)?;
     look.find = args.find.over(look.find);
     look.accuracy = args.accuracy.over(look.accuracy);
-    let photo = photo::read_with(&args.photo, &args.reading.options())?;
+    let photo = photo::read_with(&args.photo, &args.reading.of_white(args.veil.white_luminance()))?;
     warn(&photo.source.notes);
     let whole = look.frame(&photo)?;
     let scene = look.gather(&photo, &whole);

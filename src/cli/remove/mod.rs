@@ -10,6 +10,7 @@ use clap::ValueEnum;
 
 use super::apply::ProofArgs;
 use super::encoding::EncodingArgs;
+use super::luminance::Extent;
 use crate::job::{self, Removed, Removing, Stages, Step, Watch as _};
 use crate::look::Look;
 use crate::options::ReadArgs;
@@ -19,7 +20,7 @@ use crate::terminal::progress::Progress;
 use crate::{Error, Result, target};
 
 use model::ModelArgs;
-use report::Report;
+use report::{Luminance, Report};
 
 /// Take a veil away from a photo
 ///
@@ -177,9 +178,12 @@ pub fn run(args: &Args) -> Result<()> {
     let progress = Progress::start(args.quiet);
     let mut stages = Stages::default();
     progress.step(Step::Reading);
-    let photo = stages.time("read", || photo::read_with(&args.input, &args.reading.options()))?;
+    let photo =
+        stages.time("read", || photo::read_with(&args.input, &args.reading.of_white(args.model.white_luminance())))?;
     args.check(&photo)?;
     let facts = photo.facts();
+    let scale = photo.luminance_scale();
+    let before = scale.as_ref().and_then(|scale| Extent::of(&photo, scale));
     progress.step(Step::Computing);
     let mut removed = job::remove(&look, photo, args.removing(), &mut stages)?;
     removed.warnings.extend(model::ghosts_stay(&look));
@@ -189,7 +193,8 @@ pub fn run(args: &Args) -> Result<()> {
         stages.time("write", || args.write(&mut removed))
     };
     written?;
-    let report = Report { args, facts: &facts, removed: &removed, stages: &stages };
+    let luminance = scale.map(|scale| Luminance { photo: before, clean: Extent::of(&removed.photo, &scale), scale });
+    let report = Report { args, facts: &facts, removed: &removed, stages: &stages, luminance: luminance.as_ref() };
     if let Some(path) = &args.report {
         target::write_json(path, &report.json(), args.force)?;
     }

@@ -6,6 +6,7 @@ use crate::choices::Mix;
 use crate::look::Look;
 use crate::options::numbers::{not_negative, positive};
 use crate::options::{FindArgs, OpticsArgs, SceneArgs, UnitArgs, VeilArgs};
+use crate::photo::WhiteLuminance;
 use crate::{Error, Result};
 
 /// The veil that the photo has, as `vglare apply` would lay it over the clean one.
@@ -70,6 +71,11 @@ impl ModelArgs {
             ));
         }
         Ok(look)
+    }
+
+    /// What the photo's white is in cd/m², where that is given.
+    pub fn white_luminance(&self) -> Option<WhiteLuminance> {
+        self.veil.white_luminance()
     }
 
     /// The files that the veil is read from, those among them that others refer to.

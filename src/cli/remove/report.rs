@@ -3,8 +3,9 @@
 use serde::Serialize;
 
 use super::Args;
+use crate::cli::luminance::Extent;
 use crate::job::{Clipped, Removal, Removed, Stages};
-use crate::photo::Facts;
+use crate::photo::{Facts, LuminanceScale};
 
 /// What there is to tell.
 pub struct Report<'a> {
@@ -13,6 +14,20 @@ pub struct Report<'a> {
     pub facts: &'a Facts,
     pub removed: &'a Removed,
     pub stages: &'a Stages,
+    /// Nothing where the photo's numbers are not known to be any luminance.
+    pub luminance: Option<&'a Luminance>,
+}
+
+/// A photo before and after, in cd/m².
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Luminance {
+    /// What makes that of their numbers.
+    #[serde(flatten)]
+    pub scale: LuminanceScale,
+    /// Of the photo as it was read.
+    pub photo: Option<Extent>,
+    /// Of the clean one.
+    pub clean: Option<Extent>,
 }
 
 /// As JSON, one object.
@@ -25,6 +40,8 @@ pub struct Json<'a> {
     /// Nothing where there was no veil.
     removal: Option<&'a Removal>,
     clipped: Option<Clipped>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    luminance: Option<&'a Luminance>,
     warnings: &'a [String],
     milliseconds: Vec<StageJson>,
 }
@@ -47,7 +64,7 @@ struct StageJson {
 
 impl<'a> Report<'a> {
     pub fn json(&self) -> Json<'a> {
-        let Self { args, facts: Facts { frame, format, depth, picture }, removed, stages } = *self;
+        let Self { args, facts: Facts { frame, format, depth, picture }, removed, stages, luminance } = *self;
         let window = frame.window;
         let shown = |path: &Option<std::path::PathBuf>| path.as_ref().map(|path| path.display().to_string());
         Json {
@@ -64,6 +81,7 @@ impl<'a> Report<'a> {
             mask: shown(&args.mask),
             removal: removed.removal.as_ref(),
             clipped: removed.clipping,
+            luminance,
             warnings: &removed.warnings,
             milliseconds: stages.0.iter().map(|&(stage, wall_ms)| StageJson { stage, wall_ms }).collect(),
         }

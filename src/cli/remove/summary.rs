@@ -2,8 +2,9 @@
 
 use std::io::{self, Write};
 
-use super::report::Report;
+use super::report::{Luminance, Report};
 use crate::Result;
+use crate::cli::luminance;
 use crate::cli::plan::text;
 use crate::job::{Amplification, Negative, Removal, VeilSeen};
 use crate::photo::Facts;
@@ -11,7 +12,7 @@ use crate::terminal::{stderr, stdout};
 
 /// Warnings to standard error; unless quiet, a short summary to standard output.
 pub fn print(report: &Report<'_>) -> Result<()> {
-    let Report { args, facts: Facts { frame, format, depth, .. }, removed, stages } = report;
+    let Report { args, facts: Facts { frame, format, depth, .. }, removed, stages, luminance } = report;
     stderr::warn(&removed.warnings);
     if args.quiet {
         return Ok(());
@@ -21,6 +22,9 @@ pub fn print(report: &Report<'_>) -> Result<()> {
         match &removed.removal {
             Some(removal) => about(out, removal)?,
             None => writeln!(out, "veil     none, so nothing is taken away")?,
+        }
+        if let Some(Luminance { scale, photo, clean }) = luminance {
+            luminance::line(out, scale, [("photo", photo), ("clean", clean)])?;
         }
         let total: f64 = stages.0.iter().map(|(_, ms)| ms).sum();
         let written: Vec<_> =

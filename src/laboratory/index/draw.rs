@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::told::{Told, luminance};
-use crate::laboratory::chart::{Chart, Kind, Series, Stroke};
+use crate::chart::{Chart, Kind, Series, Stroke};
 use crate::laboratory::page::write_png;
 use crate::{Result, target};
 

@@ -9,13 +9,13 @@ mod told;
 
 use std::path::{Path, PathBuf};
 
+use crate::chart::Kind;
 use crate::gpu::Device;
 use crate::job::{Computer, Done, Found, Stages, Unwatched, Wanted};
-use crate::laboratory::chart::Kind;
 use crate::look::{Look, LookLens};
 use crate::options::numbers::{not_negative, positive};
 use crate::options::{AccuracyArgs, FindArgs, ReadArgs, SceneArgs, VeilArgs};
-use crate::photo::{self, Photo, WriteOptions};
+use crate::photo::{self, Photo, WhiteLuminance, WriteOptions};
 use crate::scene::SENSOR;
 use crate::terminal::progress::Progress;
 use crate::terminal::{stderr, stdout};
@@ -33,6 +33,8 @@ use told::Told;
 /// follows from the look's; the field ends with the picture.
 ///
 /// With a photo of such a chart, the index of each --spot, with its standard error by what pixels differ.
+///
+/// --luminance says what the chart's field, or the photo's white, is in cd/m²; then spots and fields are told in that, too.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
@@ -91,6 +93,7 @@ Examples:
   vglare measure --preset vintage-uncoated -o index.svg
   vglare measure --lens double-gauss --coating none --fstop 4
   vglare measure --veil cie --age 60 --fov 50 --lens none
+  vglare measure --preset vintage-uncoated --luminance 2000   Spot and field in cd/m², too
   vglare measure chart.exr --spot 480,270,40 --spot 900,60,40";
 
 /// Degrees across a look's picture where neither options nor a lens say it.
@@ -114,6 +117,9 @@ pub struct Index {
     pub off_axis_degrees: f64,
     /// In degrees.
     pub diameter_degrees: f64,
+    /// What falls on the spot, N, and the mean on the field around it, D, where the field is 1 before any glare: RGB.
+    #[serde(skip)]
+    pub levels: [[f64; 3]; 2],
     /// RGB, 0 to 1.
     pub index: [f64; 3],
     /// How far it may be off, RGB.
@@ -126,7 +132,7 @@ pub struct Index {
 /// [`Error::Usage`] for a chart or a spot that cannot be; those of reading, of the look and of the job.
 pub fn run(args: &Args) -> Result<()> {
     if let Some(path) = &args.photo {
-        let photo = photo::read_with(path, &args.reading.options())?;
+        let photo = photo::read_with(path, &args.reading.of_white(args.veil.white_luminance()))?;
         stderr::warn(&photo.source.notes);
         let spots = spots::measured(&photo, &args.spot)?;
         return told::spots(args.json, path, &photo, &spots);
@@ -141,6 +147,7 @@ pub fn run(args: &Args) -> Result<()> {
     let kind = args.output.as_deref().map(Kind::of).transpose()?;
     outputs.iter().try_for_each(|(_, path)| target::check(path, args.force))?;
     let look = look(args)?;
+    let white = field_luminance(args)?;
     let fov = look.fov.unwrap_or(USUAL_FOV);
     let field = Field::new(args.pixels, fov);
     let mut diameters = args.diameters.clone();
@@ -164,11 +171,22 @@ pub fn run(args: &Args) -> Result<()> {
         all.extend(indices(&look, &field, &places, diameter, 1.0, computer.as_mut())?);
     }
     drop(progress);
-    let told = Told { look: &look, field: &field, fov, places: &places, diameters: &diameters, all: &all };
+    let told = Told { look: &look, field: &field, fov, places: &places, diameters: &diameters, all: &all, white };
     if let (Some(path), Some(kind)) = (&args.output, kind) {
         draw::write(path, kind, &told, args.force)?;
     }
     if args.json { told.json() } else { stdout::print(|out| told.table(out)) }
+}
+
+/// What the field of the chart is in cd/m², where that is given.
+fn field_luminance(args: &Args) -> Result<Option<f64>> {
+    match args.veil.white_luminance() {
+        Some(WhiteLuminance::File) => {
+            Err(Error::Usage("--luminance file: without a photo there is no file; give the field's cd/m²".into()))
+        }
+        Some(WhiteLuminance::Given(white)) => Ok(Some(white)),
+        None => Ok(None),
+    }
 }
 
 /// The look that options give, and what its picture spans.
@@ -218,16 +236,17 @@ fn indices(
             let (spot, around) = (read(picture, place.pixel, c), mean(picture, c));
             let off = [read(glare, place.pixel, c), mean(glare, c)].map(|glare| bound(&done, c, glare));
             let index = if around > 0.0 { spot / around } else { 0.0 };
-            [index, (off[0] + index * off[1]) / (around - off[1])]
+            [index, (off[0] + index * off[1]) / (around - off[1]), spot, around]
         };
-        let both = [0, 1, 2].map(index);
+        let (both, level) = ([0, 1, 2].map(index), f64::from(level));
         Index {
             place: place.name,
             pixel: place.pixel,
             off_axis_degrees: field.off_axis(place.pixel),
             diameter_degrees: diameter,
-            index: both.map(|[index, _]| index),
-            bound: both.map(|[_, bound]| bound),
+            levels: [both.map(|[_, _, spot, _]| spot / level), both.map(|[.., around]| around / level)],
+            index: both.map(|[index, ..]| index),
+            bound: both.map(|[_, bound, ..]| bound),
         }
     };
     Ok(places.iter().map(of).collect())

@@ -40,6 +40,9 @@ pub struct Spot {
     pub centre: [f64; 2],
     /// In pixels.
     pub diameter: f64,
+    /// The means on the spot, N, and on the ring, D, in the photo's numbers: RGB.
+    #[serde(skip)]
+    pub levels: [[f64; 3]; 2],
     /// RGB.
     pub index: [f64; 3],
     /// Its standard error by what pixels of the spot and of the ring differ among themselves, each by itself, RGB.
@@ -98,12 +101,14 @@ fn of(photo: &Photo, &SpotArg { centre: [x, y], diameter }: &SpotArg) -> Result<
     if spot.iter().chain(&ring).flatten().any(|value| !value.is_finite()) {
         return Err(Error::Usage(format!("{name}: a pixel there is no finite number")));
     }
-    let mut found = Spot { centre: [x, y], diameter, index: [0.0; 3], standard_error: [0.0; 3], pixels };
+    let mut found =
+        Spot { centre: [x, y], diameter, levels: [[0.0; 3]; 2], index: [0.0; 3], standard_error: [0.0; 3], pixels };
     for c in 0..3 {
         let (Mean([black, black_off]), Mean([around, around_off])) = (Mean::of(&spot[c]), Mean::of(&ring[c]));
         if around <= 0.0 {
             return Err(Error::Usage(format!("{name}: the field about it is black")));
         }
+        (found.levels[0][c], found.levels[1][c]) = (black, around);
         found.index[c] = black / around;
         found.standard_error[c] = black_off.hypot(found.index[c] * around_off) / around;
     }

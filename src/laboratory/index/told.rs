@@ -11,8 +11,8 @@ use super::field::{Field, Place, RING};
 use super::spots::Spot;
 use crate::Result;
 use crate::look::{Look, LookLens};
-use crate::photo::Photo;
-use crate::terminal::stdout;
+use crate::photo::{LuminanceScale, Photo};
+use crate::terminal::{digits, stdout};
 
 /// What was measured of a look.
 pub struct Told<'a> {
@@ -25,10 +25,31 @@ pub struct Told<'a> {
     pub diameters: &'a [f64],
     /// Of each diameter, all places.
     pub all: &'a [Index],
+    /// cd/m² of the chart's field before any glare, where that is given.
+    pub white: Option<f64>,
+}
+
+/// What was measured, and in cd/m² where that is known.
+#[derive(Serialize)]
+struct WithLuminance<T: Serialize> {
+    #[serde(flatten)]
+    measured: T,
+    /// N, of the spot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    spot_cd_m2: Option<f64>,
+    /// D, of the field around it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    field_cd_m2: Option<f64>,
+}
+
+impl<T: Serialize> WithLuminance<T> {
+    fn new(measured: T, both: Option<[f64; 2]>) -> Self {
+        Self { measured, spot_cd_m2: both.map(|[spot, _]| spot), field_cd_m2: both.map(|[_, field]| field) }
+    }
 }
 
 #[derive(Serialize)]
-struct Json<'a> {
+struct Json {
     vglare: &'static str,
     lens: String,
     veil: Option<String>,
@@ -37,7 +58,10 @@ struct Json<'a> {
     picture: [u32; 2],
     fov: f64,
     ring_diameters: f64,
-    spots: &'a [Index],
+    /// cd/m² of the field before any glare.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    field_cd_m2: Option<f64>,
+    spots: Vec<WithLuminance<Index>>,
 }
 
 /// Rec. 709's weights of luminance.
@@ -55,6 +79,11 @@ impl Told<'_> {
 
     fn lens(&self) -> String {
         if self.look.lens_ghosts().is_empty() { "no ghosts".to_owned() } else { self.look.lens().name.clone() }
+    }
+
+    /// N and D of a spot in cd/m², where the field is.
+    fn in_cd_m2(&self, spot: &Index) -> Option<[f64; 2]> {
+        self.white.map(|white| spot.levels.map(|level| white * luminance(level)))
     }
 
     fn veil(&self) -> Option<String> {
@@ -76,7 +105,8 @@ impl Told<'_> {
             picture: self.field.size,
             fov: self.fov,
             ring_diameters: RING,
-            spots: self.all,
+            field_cd_m2: self.white,
+            spots: self.all.iter().map(|spot| WithLuminance::new(*spot, self.in_cd_m2(spot))).collect(),
         };
         print(&json)
     }
@@ -102,7 +132,24 @@ impl Told<'_> {
         writeln!(
             out,
             "The luminance of a spot's centre over that of the field {RING} diameters from it; in the manner of ISO 9358."
-        )
+        )?;
+        self.white.map_or(Ok(()), |white| self.luminances(out, white))
+    }
+
+    /// The same places in cd/m².
+    fn luminances(&self, out: &mut dyn Write, white: f64) -> io::Result<()> {
+        writeln!(out, "\nSpot and field in cd/m², of a field of {} before any glare:", digits(white))?;
+        let mut table = Table::new();
+        table.load_style(presets::NOTHING);
+        let spots = self.diameters.iter().map(|diameter| format!("{diameter}° spot"));
+        table.set_header(["place".to_owned()].into_iter().chain(spots));
+        for (number, place) in self.places.iter().enumerate() {
+            let of = self.all.iter().skip(number).step_by(self.places.len()).filter_map(|spot| self.in_cd_m2(spot));
+            let cells = of.map(|both| both.map(digits).join(" and "));
+            table.add_row([place.name.to_owned()].into_iter().chain(cells));
+        }
+        table.column_iter_mut().skip(1).for_each(|column| column.set_cell_alignment(CellAlignment::Right));
+        writeln!(out, "{}", table.trim_fmt())
     }
 }
 
@@ -110,27 +157,42 @@ impl Told<'_> {
 struct PhotoJson<'a> {
     vglare: &'static str,
     photo: String,
-    spots: &'a [Spot],
+    /// What the photo's numbers are, where that is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    luminance: Option<&'a LuminanceScale>,
+    spots: Vec<WithLuminance<Spot>>,
 }
 
 /// What was measured in a photo.
 pub fn spots(as_json: bool, path: &Path, photo: &Photo, spots: &[Spot]) -> Result<()> {
+    let scale = photo.luminance_scale();
+    let in_cd_m2 = |spot: &Spot| scale.as_ref().map(|scale| spot.levels.map(|level| scale.of_colour(level)));
     if as_json {
-        return print(&PhotoJson { vglare: env!("CARGO_PKG_VERSION"), photo: path.display().to_string(), spots });
+        let spots = spots.iter().map(|spot| WithLuminance::new(*spot, in_cd_m2(spot))).collect();
+        let (vglare, photo) = (env!("CARGO_PKG_VERSION"), path.display().to_string());
+        return print(&PhotoJson { vglare, photo, luminance: scale.as_ref(), spots });
     }
     stdout::print(|out| {
         writeln!(out, "{}: {} x {}, {}", path.display(), photo.width(), photo.height(), photo.format_name())?;
         let mut table = Table::new();
         table.load_style(presets::NOTHING);
-        table.set_header(["column", "row", "diameter", "red, %", "green, %", "blue, %", "pixels"]);
-        for Spot { centre: [x, y], diameter, index, standard_error, pixels: [spot, ring] } in spots {
+        let header = ["column", "row", "diameter", "red, %", "green, %", "blue, %", "pixels"];
+        let more: &[&str] = if scale.is_some() { &["spot, cd/m²", "field, cd/m²"] } else { &[] };
+        table.set_header(header.iter().chain(more));
+        for spot in spots {
+            let in_cd_m2 = in_cd_m2(spot);
+            let Spot { centre: [x, y], diameter, levels: _, index, standard_error, pixels: [spot, ring] } = spot;
             let cell = |c: usize| format!("{:.3} ± {:.3}", 100.0 * index[c], 100.0 * standard_error[c]);
             let [red, green, blue] = [0, 1, 2].map(cell);
             let pixels = format!("{spot} and {ring}");
-            table.add_row([x.to_string(), y.to_string(), diameter.to_string(), red, green, blue, pixels]);
+            let cells = [x.to_string(), y.to_string(), diameter.to_string(), red, green, blue, pixels];
+            table.add_row(cells.into_iter().chain(in_cd_m2.into_iter().flatten().map(digits)));
         }
         table.column_iter_mut().for_each(|column| column.set_cell_alignment(CellAlignment::Right));
-        writeln!(out, "{}", table.trim_fmt())
+        writeln!(out, "{}", table.trim_fmt())?;
+        scale.iter().try_for_each(|scale| {
+            writeln!(out, "White of the photo: {} cd/m², {}", digits(scale.cd_m2_per_unit), scale.from)
+        })
     })
 }
 

@@ -1,7 +1,7 @@
 //! What the coatings of a lens reflect, over wavelength.
 
+use crate::chart::{COLOURS, Chart, Colour, Series, Stroke};
 use crate::false_colour::Map;
-use crate::laboratory::chart::{COLOURS, Chart, Colour, Series, Stroke};
 use crate::optics::{Coating, Glass, LINE_D, Layer, Prescription, response};
 use crate::printable::printable;
 

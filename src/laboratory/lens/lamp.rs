@@ -8,7 +8,7 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec2;
 use image::RgbImage;
 
-use crate::laboratory::chart::{Anchor, Colour, Shape, Sheet};
+use crate::chart::{Anchor, Colour, Shape, Sheet};
 use crate::optics::{Clip, GhostPath, LensGhosts, System};
 
 /// Where the lamps' images are on the way from the middle to the corner of the sensor.

@@ -20,7 +20,7 @@ mod text;
 
 use std::path::{Path, PathBuf};
 
-use crate::laboratory::chart::{Chart, Kind, Sheet};
+use crate::chart::{Chart, Kind, Sheet};
 use crate::laboratory::page::png_bytes;
 use crate::optics::{GhostPath, LensGhosts, System};
 use crate::options::OpticsArgs;

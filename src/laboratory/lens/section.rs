@@ -2,7 +2,7 @@
 
 use super::bundle::{Bundles, Ray};
 use crate::Result;
-use crate::laboratory::chart::{Anchor, COLOURS, Colour, Shape, Sheet, text_width};
+use crate::chart::{Anchor, COLOURS, Colour, Shape, Sheet, text_width};
 use crate::optics::{GhostPath, LINE_D, Prescription, Surface, System};
 
 /// Pixels from left to right.

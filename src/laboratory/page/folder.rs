@@ -1,12 +1,10 @@
 //! Files in a folder beside a page.
 
-use std::io::Cursor;
 use std::path::Path;
 
-use image::{ImageFormat, RgbImage};
 use serde::Serialize;
 
-use crate::laboratory::chart::Numbers;
+use crate::chart::Numbers;
 use crate::{Error, Result, target};
 
 /// The page's name.
@@ -27,24 +25,6 @@ pub(crate) fn open(folder: &Path, generator: &str, force: bool) -> Result<()> {
         }
     }
     target::make_folder(folder)
-}
-
-/// Writes a picture, in place of one that is there if need be.
-///
-/// # Errors
-/// [`Error::Write`] where it cannot be written, [`Error::Exists`].
-pub(crate) fn write_png(path: &Path, picture: &RgbImage, overwrite: bool) -> Result<()> {
-    target::write(path, &png_bytes(path, picture)?, overwrite)
-}
-
-/// What a picture's file is to hold.
-///
-/// # Errors
-/// [`Error::Write`] where there is no room for it.
-pub(crate) fn png_bytes(path: &Path, picture: &RgbImage) -> Result<Vec<u8>> {
-    let mut png = Cursor::new(Vec::new());
-    picture.write_to(&mut png, ImageFormat::Png).map_err(|error| Error::write(path, error))?;
-    Ok(png.into_inner())
 }
 
 type Reason = Box<dyn std::error::Error>;

@@ -7,7 +7,8 @@ use std::fmt::Write as _;
 use crate::gpu::Info;
 use crate::printable::printable;
 
-pub(crate) use folder::{INDEX, csv_text, numbers_csv, open, png_bytes, write_png};
+pub(crate) use crate::chart::{png_bytes, write_png};
+pub(crate) use folder::{INDEX, csv_text, numbers_csv, open};
 
 const STYLE: &str = "
 :root { color-scheme: light dark; --ink: #1d2127; --soft: #5b6470; --line: #d9dde3; --ground: #fff; --card: #f6f7f9 }

@@ -5,8 +5,8 @@ use std::path::Path;
 use image::RgbImage;
 use image::imageops::replace;
 
-use super::{Shown, units};
-use crate::laboratory::chart::{Chart, Kind, Series, Stroke};
+use super::Shown;
+use crate::chart::{Chart, Kind, Series, Stroke};
 use crate::laboratory::page::write_png;
 use crate::psf::{Mode, Row};
 use crate::{Result, target};
@@ -26,17 +26,21 @@ pub fn write(path: &Path, kind: Kind, shown: &Shown, force: bool) -> Result<()> 
     }
 }
 
-fn charts(Shown { psf, range: _, mixture, profile }: &Shown) -> [Chart; 4] {
-    let (angle, area) = units(psf.unit());
+fn charts(shown: &Shown) -> [Chart; 4] {
+    let Shown { psf, range: _, mixture, profile, axis } = shown;
+    let ((angle, area), factor) = (shown.units(), shown.factor());
     let angle = format!("angle or radius,{}", angle.replace('°', " degrees"));
     let of = |value: fn(&Row) -> f64| profile.rows.iter().map(|row| [row.angle, value(row)]).collect::<Vec<_>>();
+    let on_axis = axis.map_or_else(String::new, |axis| format!(", on the axis of {}° across", axis.fov));
     let sized = |chart: Chart| Chart { size: SIZE, ..chart };
-    let mut values = Chart::new(format!("{}: value", psf.name()), &angle, format!("per {area}")).log_x().log_y();
-    values = values.with(Series::new("the function", of(|row| row.value)));
+    let mut values =
+        Chart::new(format!("{}: value", psf.name()), &angle, format!("per {area}{on_axis}")).log_x().log_y();
+    let scaled = |value: fn(&Row) -> f64| of(value).into_iter().map(|[angle, value]| [angle, factor * value]).collect();
+    values = values.with(Series::new("the function", scaled(|row| row.value)));
     let mut error = Chart::new("Error of the Gaussians", &angle, "relative").log_x();
     if let Some(mixture) = mixture {
         let label = format!("{} Gaussians", mixture.terms.len());
-        values = values.with(Series::new(&label, of(|row| row.mixture)).stroke(Stroke::Dashed));
+        values = values.with(Series::new(&label, scaled(|row| row.mixture)).stroke(Stroke::Dashed));
         error = error.with(Series::new(label, of(|row| row.error)));
     }
     let encircled = Chart::new("Encircled energy", &angle, "share of all").log_x().range_y(0.0, 1.0);

@@ -1,18 +1,21 @@
 //! `vglare psf`: a point-spread function, its transform and its mixture of Gaussians.
 
 mod draw;
+mod told;
 
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use crate::laboratory::chart::Kind;
-use crate::options::numbers::positive;
+use crate::chart::Kind;
+use crate::choices::Projection;
+use crate::frame::Frame;
+use crate::options::numbers::{positive, range, sides};
 use crate::options::psf::{told, wrong};
 use crate::options::{ApertureArgs, PsfArgs};
-use crate::psf::{Mixture, Name, Parameters, Profile, Psf, Row, Unit};
-use crate::scene::VeilFunction;
+use crate::photo::View;
+use crate::psf::{Mixture, Name, Parameters, Profile, Psf, Unit};
+use crate::scene::{VeilFunction, check_fov};
 use crate::terminal::stdout;
-use crate::{Result, target};
+use crate::{Error, Result, target};
 
 /// Show a point-spread function: what a point's light becomes
 ///
@@ -37,11 +40,24 @@ pub struct Args {
 
     /// The angles or radii [default: 0.1 to 100 degrees, from 0.01 for cie135 and spencer; 0.001 to 2 of the look's unit; 1 to 20000 micrometres]
     #[arg(long, value_name = "FROM,TO", allow_hyphen_values = true, value_parser = range)]
-    range: Option<Range>,
+    range: Option<[f64; 2]>,
 
     /// How close the Gaussians are to come, relatively, from 1e-6 to 0.5
     #[arg(long, value_name = "E", default_value_t = 1e-2, allow_hyphen_values = true, value_parser = positive)]
     tolerance: f64,
+
+    /// Give the values of a function in the look's unit per steradian: the unit is half the shorter side of a picture whose width spans
+    /// so many degrees, 0.1 to 179, as it is on the axis
+    #[arg(long, value_name = "DEGREES", allow_hyphen_values = true, value_parser = positive)]
+    fov: Option<f64>,
+
+    /// The shape of that picture
+    #[arg(long, value_name = "WxH", default_value = "3x2", value_parser = sides, requires = "fov")]
+    frame: [u32; 2],
+
+    /// Print JSON: all of it, and the rows of --csv
+    #[arg(long)]
+    json: bool,
 
     /// Draw profile, error of the Gaussians, encircled energy and transform: .svg or .png
     #[arg(long, value_name = "FILE")]
@@ -59,22 +75,11 @@ pub struct Args {
 const EXAMPLES: &str = "\
 Examples:
   vglare psf cie --age 60 --plot psf.svg --csv psf.csv
-  vglare psf spencer --luminance scotopic --tolerance 1e-3
+  vglare psf spencer --adaptation scotopic --tolerance 1e-3
   vglare psf abg --abg 1e-4,1e-3,2.5
+  vglare psf camera --fov 50 --json
   vglare psf table --table measured.csv --plot psf.png
   vglare psf starburst --fstop 16 --blades 7";
-
-/// `--range`.
-#[derive(Debug, Clone, Copy)]
-struct Range([f64; 2]);
-
-fn range(text: &str) -> std::result::Result<Range, String> {
-    let ends: Vec<f64> = text.split(',').filter_map(|end| positive(end.trim()).ok()).collect();
-    match (ends[..].first_chunk(), text.split(',').count()) {
-        (Some(&[from, to]), 2) if ends.len() == 2 && from < to => Ok(Range([from, to])),
-        _ => Err("expected two numbers above 0, the smaller one first, like 0.1,30".to_owned()),
-    }
-}
 
 /// A function, and all that is shown of it.
 pub(super) struct Shown {
@@ -83,6 +88,46 @@ pub(super) struct Shown {
     /// None of a picture, which is not round.
     pub mixture: Option<Mixture>,
     pub profile: Profile,
+    /// What its unit is on the axis of a picture, where it is in the look's and that is asked for: its values are per steradian then.
+    pub axis: Option<Axis>,
+}
+
+/// The axis of a rectilinear picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Axis {
+    /// Degrees across its width.
+    pub fov: f64,
+    /// The look's unit, half the shorter side, in focal lengths: radians on the axis.
+    pub unit: f64,
+}
+
+impl Axis {
+    /// # Errors
+    /// [`Error::Usage`] for a function in another unit, and a field of view that is none.
+    fn new(psf: &Psf, fov: f64, [width, height]: [u32; 2]) -> Result<Self> {
+        let (name, usage) = (psf.name(), |reason: String| Error::Usage(format!("--fov: {reason}")));
+        match psf.unit() {
+            Unit::Look => {}
+            Unit::Degrees => return Err(usage(format!("{name} is per steradian already"))),
+            Unit::Pixels | Unit::Micrometres => return Err(usage(format!("{name} is not in the look's unit"))),
+        }
+        check_fov(fov, Some(Projection::Planar)).map_err(|fault| usage(fault.reason))?;
+        let View { focal, .. } = View::of_field(fov, &Frame::full(width, height), Projection::Planar);
+        Ok(Self { fov, unit: 0.5 * f64::from(width.min(height)) / focal })
+    }
+}
+
+impl Shown {
+    /// What values are multiplied by: as many squares of the unit as are a steradian on the axis.
+    pub fn factor(&self) -> f64 {
+        self.axis.map_or(1.0, |axis| axis.unit.powi(2).recip())
+    }
+
+    /// What stands after an angle or a radius, and what values are for.
+    pub fn units(&self) -> (&'static str, &'static str) {
+        let (angle, area) = units(self.psf.unit());
+        (angle, if self.axis.is_some() { "steradian" } else { area })
+    }
 }
 
 /// Rows of the profile.
@@ -100,20 +145,27 @@ pub fn run(args: &Args) -> Result<()> {
         .collect();
     target::spare(&outputs, &[])?;
     outputs.iter().try_for_each(|(_, path)| target::check(path, args.force))?;
+    if args.psf.white_luminance().is_some() {
+        return Err(Error::Usage("--luminance: cd/m² are of a photo, and a function alone is of none".into()));
+    }
     let parameters = args.psf.over(Parameters::new(args.name), &args.aperture);
     let psf = told(VeilFunction::new(&parameters))?.psf().clone();
-    let range = args.range.map_or_else(|| usual(&psf), |Range(range)| range);
+    let range = args.range.unwrap_or_else(|| usual(&psf));
     let mixture =
         if psf.is_round() { Some(psf.mixture(range, args.tolerance).map_err(|fault| wrong(&fault))?) } else { None };
     let profile = psf.profile(range, mixture.as_ref(), ROWS).map_err(|fault| wrong(&fault))?;
-    let shown = Shown { psf, range, mixture, profile };
+    let axis = args.fov.map(|fov| Axis::new(&psf, fov, args.frame)).transpose()?;
+    let shown = Shown { psf, range, mixture, profile, axis };
     if let Some((path, kind)) = drawn {
         draw::write(path, kind, &shown, args.force)?;
     }
     if let Some(path) = &args.csv {
-        target::write_text(path, &csv(&shown), args.force)?;
+        target::write_text(path, &told::csv(&shown), args.force)?;
     }
-    stdout::print(|out| out.write_all(summary(&shown).as_bytes()))
+    if args.json {
+        return stdout::json(|out| told::json(out, &shown));
+    }
+    stdout::print(|out| out.write_all(told::summary(&shown).as_bytes()))
 }
 
 /// What is shown where nobody says.
@@ -127,49 +179,8 @@ fn usual(psf: &Psf) -> [f64; 2] {
     }
 }
 
-fn summary(Shown { psf, range: [from, to], mixture, profile }: &Shown) -> String {
-    let (angle, area) = units(psf.unit());
-    let mut text = format!("psf      {}, from {from} to {to}{angle}\n", psf.name());
-    // Writing to a string cannot fail.
-    let _ = writeln!(text, "energy   {:.4} of the light; {:.4e} per {area} at the centre", psf.energy(), psf.centre());
-    let places = [0.01, 0.1, 1.0, 10.0].into_iter().filter(|place| (*from..=*to).contains(place));
-    let within: Vec<String> = places
-        .map(|place| format!("{:.1} % within {place}{angle}", 100.0 * psf.energy_within(place) / psf.energy()))
-        .collect();
-    if !within.is_empty() {
-        let _ = writeln!(text, "         {}", within.join(", "));
-    }
-    match mixture {
-        Some(mixture) => {
-            let _ = writeln!(
-                text,
-                "mixture  {} Gaussians, within {:.2e} of it from {} to {}{angle}",
-                mixture.terms.len(),
-                mixture.error,
-                mixture.range[0],
-                mixture.range[1]
-            );
-            for term in &mixture.terms {
-                let _ = writeln!(text, "         sigma {:<12.6} value at its centre {:.6e}", term.sigma, term.weight);
-            }
-            if mixture.constant != 0.0 || mixture.quadratic != 0.0 {
-                let _ = writeln!(
-                    text,
-                    "         and {:.6e} + {:.6e} × angle², exactly",
-                    mixture.constant, mixture.quadratic
-                );
-            }
-        }
-        None => {
-            let _ = writeln!(text, "mixture  none: a picture is not round");
-        }
-    }
-    let _ = writeln!(text, "rows     {} angles, {} frequencies", profile.rows.len(), profile.modes.len());
-    text
-}
-
 /// What stands after an angle, and the unit of areas.
-pub(super) fn units(unit: Unit) -> (&'static str, &'static str) {
+fn units(unit: Unit) -> (&'static str, &'static str) {
     match unit {
         Unit::Degrees => ("°", "steradian"),
         Unit::Look => (" half heights", "square of a half height"),
@@ -178,26 +189,19 @@ pub(super) fn units(unit: Unit) -> (&'static str, &'static str) {
     }
 }
 
-/// All rows; the frequencies stand beside the angles, line by line, and have no more to do with them than that.
-fn csv(Shown { profile: Profile { rows, modes }, .. }: &Shown) -> String {
-    let mut text = "angle,value,mixture,relative error,encircled energy,frequency,transform\n".to_owned();
-    for (Row { angle, value, mixture, error, encircled }, mode) in rows.iter().zip(modes) {
-        let number = |value: f64| if value.is_nan() { String::new() } else { format!("{value:e}") };
-        let line = [*angle, *value, *mixture, *error, *encircled, mode.frequency, mode.transform].map(number);
-        let _ = writeln!(text, "{}", line.join(","));
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// Half the height of a picture of 3 × 2 is tan(25°) / 1.5 of its focal length where its width spans 50°.
     #[test]
-    fn a_range_is_two_numbers_in_their_order() {
-        assert_eq!(range("0.1, 30").unwrap().0, [0.1, 30.0]);
-        for bad in ["", "1", "2,1", "1,1", "0,1", "-1,1", "1,nan", "1,2,3"] {
-            assert!(range(bad).is_err(), "{bad}");
-        }
+    fn the_unit_is_half_the_shorter_side_in_focal_lengths() {
+        let camera = || Parameters::new(Name::Camera).function(|_| unreachable!(), |_| unreachable!()).unwrap();
+        let unit = |frame| Axis::new(&camera(), 50.0, frame).unwrap().unit;
+        let half = 25.0f64.to_radians().tan();
+        assert!((unit([3, 2]) / (half / 1.5) - 1.0).abs() < 1e-12 && (unit([2, 3]) / half - 1.0).abs() < 1e-12);
+        assert!(Axis::new(&camera(), 200.0, [3, 2]).is_err());
+        let cie = Parameters::new(Name::Cie).function(|_| unreachable!(), |_| unreachable!()).unwrap();
+        assert!(Axis::new(&cie, 50.0, [3, 2]).is_err_and(|error| error.to_string().contains("per steradian already")));
     }
 }

@@ -25,7 +25,7 @@ mod plane;
 mod report;
 
 use crate::chance;
-pub use crate::laboratory::chart;
+pub use crate::chart;
 pub use book::Book;
 pub use lab::Lab;
 pub use report::{Field, Figure, Numbers, Report, Table};

@@ -91,7 +91,7 @@ pub fn run(args: &Args) -> Result<()> {
     args.scene.unit.check(&look)?;
     look.find = args.find.over(look.find);
     progress.say("reading the photo");
-    let mut photo = photo::read_with(&args.photo, &args.reading.options())?;
+    let mut photo = photo::read_with(&args.photo, &args.reading.of_white(args.veil.white_luminance()))?;
     warn(&photo.source.notes);
     progress.say("finding what glares");
     let veiled = veiled(&look, &photo)?;

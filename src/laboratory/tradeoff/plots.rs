@@ -4,7 +4,7 @@ use super::Results;
 use super::captions as say;
 use super::front::{exponent, ghosts, times};
 use super::point::{Point, Storage, Sweep};
-use crate::laboratory::chart::{Along, COLOURS, Chart, Colour, Series, Stroke};
+use crate::chart::{Along, COLOURS, Chart, Colour, Series, Stroke};
 use crate::plan::Evaluator;
 
 /// A chart, the name of its files, and what to see in it.

@@ -11,6 +11,7 @@ use exr::meta::{BlockDescription, Headers};
 use glam::DVec2;
 use rayon::prelude::*;
 
+use super::super::luminance::Said;
 use super::super::read::check_size;
 use super::super::{Alpha, Depth, Format, Photo, Primaries, ReadOptions, Reason, Source};
 use super::blocks::{Block, Blocks};
@@ -182,10 +183,17 @@ fn source(layer: &Layer, headers: &[Header], options: &ReadOptions) -> (Source, 
         grey: layer.colours == Colours::Grey,
         primaries,
         pixel_aspect,
+        luminance: luminance(header),
         camera: camera::of(header),
         ..Source::plain()
     };
     (source, notes)
+}
+
+/// cd/m² of (1, 1, 1) by `whiteLuminance`, one of OpenEXR's standard attributes, where the part has it.
+fn luminance(header: &Header) -> Option<Said> {
+    let white = header.own_attributes.white_luminance?;
+    Some(Said::of_white(white.into(), format!("its whiteLuminance of {white}")))
 }
 
 pub(super) fn primaries(c: Chromaticities) -> Primaries {

@@ -13,6 +13,7 @@ use exr::meta::{BlockDescription, Headers, MetaData, TileIndices, magic_number};
 use glam::DVec2;
 use rayon::prelude::*;
 
+use super::super::luminance::Said;
 use super::super::{Alpha, Depth, Photo, Primaries, Reason, display};
 use super::layer::{Member, Role};
 use super::lines::Scratch;
@@ -46,6 +47,7 @@ struct Main<'p> {
 pub fn write(writer: impl Write + Seek, photo: &Photo, depth: Depth) -> Result<(), Reason> {
     let Some(rest) = photo.source.exr.as_deref() else {
         let mut header = plain_header(photo);
+        say_luminance(&mut header, photo);
         let channels = with_depth(plain_channels(photo), depth);
         let main = Main::new(photo, 0, channels, &mut header);
         if photo.source.quick {
@@ -55,6 +57,7 @@ pub fn write(writer: impl Write + Seek, photo: &Photo, depth: Depth) -> Result<(
     };
     let mut headers = rest.headers.clone();
     check_window(photo, &headers[rest.layer.part()])?;
+    rest.layer.members.iter().for_each(|member| say_luminance(&mut headers[member.part], photo));
     let is_main = |chunk: &Chunk| rest.layer.member(chunk.layer_index).is_some();
     if rest.is_kept && depth == photo.source.depth && is_unchanged(photo, rest)? {
         let chunks: Vec<_> = rest.chunks.iter().collect();
@@ -76,6 +79,14 @@ pub fn write(writer: impl Write + Seek, photo: &Photo, depth: Depth) -> Result<(
     }
     let chunks: Vec<_> = rest.chunks.iter().filter(|(_, chunk)| !is_main(chunk)).collect();
     Container::new(writer, headers)?.finish(&mains, &chunks)
+}
+
+/// Says what white is in cd/m², where that is known and one number says it: `whiteLuminance`.
+fn say_luminance(header: &mut Header, photo: &Photo) {
+    let white = photo.source.luminance.as_ref().and_then(Said::white).map(|white| white as f32);
+    if let Some(white) = white.filter(|white| white.is_normal()) {
+        header.own_attributes.white_luminance = Some(white);
+    }
 }
 
 /// Whether the pixels are still those of the chunks that the picture came in.

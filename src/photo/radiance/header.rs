@@ -5,6 +5,7 @@ use std::io::{BufRead, Read as _, Write};
 use glam::DVec2;
 
 use super::super::camera::Camera;
+use super::super::luminance::{RADIANCE_EFFICACY, Said};
 use super::super::{Photo, Primaries, Reason};
 
 /// Headers list the commands that made a picture; one longer than this is none.
@@ -15,8 +16,11 @@ const LONGEST: u64 = 1 << 20;
 pub struct Header {
     /// The lines that are carried, as they are: all but those that follow from the photo itself.
     lines: Vec<Vec<u8>>,
-    /// The product of all EXPOSURE and COLORCORR: what the original light of each colour was multiplied by.
+    /// The product of all EXPOSURE and COLORCORR: what the original light of each colour was multiplied by; NaN where a line of
+    /// them is no number.
     exposure: [f64; 3],
+    /// Whether it names an EXPOSURE.
+    names_exposure: bool,
     /// Whether the pixels are CIE XYZ.
     pub xyz: bool,
     pub primaries: Option<Primaries>,
@@ -53,6 +57,7 @@ impl Header {
         let mut header = Self {
             lines: Vec::new(),
             exposure: [1.0; 3],
+            names_exposure: false,
             xyz: false,
             primaries: None,
             lost_primaries: false,
@@ -90,11 +95,6 @@ impl Header {
             let numbers: Option<Vec<f64>> = value.split_whitespace().map(|word| word.parse().ok()).collect();
             numbers.filter(|numbers| numbers.len() == count && numbers.iter().all(|n| n.is_finite()))
         };
-        let mut multiply = |by: [f64; 3]| {
-            if by.iter().all(|&by| by > 0.0) {
-                (0..3).for_each(|c| self.exposure[c] *= by[c]);
-            }
-        };
         match name {
             "FORMAT" => match value.trim() {
                 "32-bit_rle_rgbe" => return Ok(()),
@@ -115,9 +115,12 @@ impl Header {
             "PIXASPECT" => self.aspect *= numbers(1).map_or(1.0, |n| if n[0] > 0.0 { n[0] } else { 1.0 }),
             _ => {
                 match name {
-                    "EXPOSURE" => numbers(1).into_iter().for_each(|n| multiply([n[0]; 3])),
+                    "EXPOSURE" => {
+                        self.names_exposure = true;
+                        self.multiply(numbers(1).map_or([f64::NAN; 3], |n| [n[0]; 3]));
+                    }
                     "VIEW" => self.camera = view(value),
-                    "COLORCORR" => numbers(3).into_iter().for_each(|n| multiply([n[0], n[1], n[2]])),
+                    "COLORCORR" => self.multiply(numbers(3).map_or([f64::NAN; 3], |n| [n[0], n[1], n[2]])),
                     _ => {}
                 }
                 if !line.is_empty() && !line.starts_with(b"#?") {
@@ -128,9 +131,35 @@ impl Header {
         Ok(())
     }
 
-    /// What the original light of red, green and blue was multiplied by.
+    /// What the original light of red, green and blue was multiplied by; NaN where that is not known.
     pub fn exposure(&self) -> [f64; 3] {
         self.exposure
+    }
+
+    /// A negative or vanishing factor is none, and cannot be made up for by another.
+    fn multiply(&mut self, by: [f64; 3]) {
+        (0..3).for_each(|c| self.exposure[c] *= if by[c] > 0.0 { by[c] } else { f64::NAN });
+    }
+
+    /// What its numbers are in cd/m²: over EXPOSURE and COLORCORR, W/(sr m²) of white light, but lm/(sr m²) where they are XYZ.
+    pub fn luminance(&self) -> Said {
+        // Of XYZ, Y is luminance.
+        let factors = if self.xyz { [self.exposure[1]; 3] } else { self.exposure };
+        let efficacy = if self.xyz { 1.0 } else { RADIANCE_EFFICACY };
+        let unit = if self.xyz { "its Radiance header, Y in lm/(sr m²)" } else { "its Radiance header, 179 lm/W" };
+        let [red, green, blue] = factors;
+        let from = match (self.names_exposure, red == green && green == blue) {
+            _ if factors.iter().any(|factor| factor.is_nan()) => "its EXPOSURE or COLORCORR".to_owned(),
+            (false, true) => format!("{unit}, no EXPOSURE"),
+            (true, true) => format!("{unit} over an EXPOSURE of {green}"),
+            (_, false) => format!("{unit} over EXPOSURE and COLORCORR of {red}, {green} and {blue}"),
+        };
+        Said { channels: factors.map(|factor| efficacy / factor), from, explicit: self.names_exposure }
+    }
+
+    /// What the same lines say of numbers that are RGB, in cd/m².
+    fn as_rgb(&self) -> [f64; 3] {
+        self.exposure.map(|factor| RADIANCE_EFFICACY / factor)
     }
 
     /// The camera, where VIEW tells of one that looks straight at the picture.
@@ -194,9 +223,19 @@ impl Order {
 /// Where the system refuses.
 pub fn write(mut writer: impl Write, photo: &Photo, primaries: Option<Primaries>) -> Result<(), Reason> {
     writer.write_all(b"#?RADIANCE\n")?;
-    for line in photo.source.radiance.iter().flat_map(|header| &header.lines) {
+    // Written as RGB, the numbers are again what the header's own lines make of them, or another line says it.
+    let own = photo.source.radiance.as_deref();
+    let said = photo.source.luminance.as_ref();
+    let exposure = said.filter(|said| own.is_none_or(|own| own.as_rgb() != said.channels)).and_then(Said::white);
+    for line in own.iter().flat_map(|header| &header.lines) {
+        if exposure.is_some() && [&b"EXPOSURE="[..], b"COLORCORR="].iter().any(|name| line.starts_with(name)) {
+            continue;
+        }
         writer.write_all(line)?;
         writer.write_all(b"\n")?;
+    }
+    if let Some(white) = exposure {
+        writeln!(writer, "EXPOSURE= {}", RADIANCE_EFFICACY / white)?;
     }
     if let Some(Primaries { red, green, blue, white }) = primaries {
         let points = [red, green, blue, white].map(|p| format!("{} {}", p.x, p.y));

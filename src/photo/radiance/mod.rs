@@ -3,7 +3,8 @@
 //! \[FMT\] Greg Ward, "Radiance File Formats": radiance-online.org, refer/filefmts.pdf.
 //!
 //! Pixels stay as they are stored: the header's EXPOSURE and COLORCORR, which they have been multiplied by, are carried
-//! like VIEW and all else, and written back to Radiance HDR; other formats get the pixels without it. PRIMARIES are
+//! like VIEW and all else, and written back to Radiance HDR; other formats get the pixels without it, and OpenEXR what is
+//! white in cd/m² by it. Where a photo's white is known to be another, EXPOSURE is written by that. PRIMARIES are
 //! honoured, and kept where a Radiance picture becomes one again. XYZE becomes Rec. 709 as it is read, by XYZ as they
 //! stand: the white of D65 is white. Pictures are written upright, from the top left.
 
@@ -61,6 +62,7 @@ pub(super) fn read(mut reader: impl BufRead + Seek, options: &ReadOptions) -> Re
         primaries: header.primaries.filter(|_| !header.xyz).and_then(Primaries::other_than_rec709),
         pixel_aspect: header.pixel_aspect(),
         space: xyz.map(|_| "CIE XYZ".to_owned()),
+        luminance: Some(header.luminance()),
         camera: header.camera(),
         radiance: Some(Arc::new(header)),
         ..Source::plain()

@@ -1,6 +1,7 @@
 use glam::DVec3;
 use image::codecs::hdr::HdrDecoder as Independent;
 
+use super::super::{WhiteLuminance, luminance};
 use super::*;
 
 fn round_trip(pixels: Vec<[f32; 4]>) -> Vec<[f32; 4]> {
@@ -96,7 +97,7 @@ fn a_header_is_kept_and_its_primaries_honoured() {
     let photo = photo(file(header, "-Y 2 +X 3", "\n", &UPRIGHT));
     assert_eq!(photo.source.primaries, Some(Primaries::REC2020));
     assert_eq!(photo.source.pixel_aspect, 0.5, "Radiance's is height over width");
-    assert_eq!(photo.source.radiance.as_ref().unwrap().exposure(), [2.0, 4.0, 2.0]);
+    assert_eq!(photo.source.luminance.as_ref().unwrap().channels, [89.5, 44.75, 89.5]);
     let mut written = Vec::new();
     write(&mut written, &photo).unwrap();
     let text = String::from_utf8_lossy(&written);
@@ -117,6 +118,65 @@ fn a_header_is_kept_and_its_primaries_honoured() {
     let mut glare = Vec::new();
     write(&mut glare, &photo.companion(photo.pixels.clone())).unwrap();
     assert!(String::from_utf8_lossy(&glare).contains("EXPOSURE=4"));
+}
+
+/// As a file is read and not decoded alone.
+fn settled(header: &str, asked: Option<WhiteLuminance>) -> Result<Photo, String> {
+    let mut photo = photo(file(header, "-Y 2 +X 3", "\n", &UPRIGHT));
+    luminance::settle(&mut photo, asked).map_err(|reason| reason.to_string()).map(|()| photo)
+}
+
+fn written_and_read(photo: &Photo) -> Photo {
+    let mut written = Vec::new();
+    write(&mut written, photo).unwrap();
+    let mut again = super::read(Cursor::new(written), &ReadOptions::default()).unwrap();
+    luminance::settle(&mut again, None).unwrap();
+    again
+}
+
+#[test]
+fn luminance_is_179_over_the_exposures_and_kept() {
+    let file = Some(WhiteLuminance::File);
+    let weights = |photo: &Photo| photo.luminance_scale().unwrap().weights;
+    let shares = [0.2126, 0.7152, 0.0722];
+    for (header, asked, factors) in [
+        ("EXPOSURE=4\n\tEXPOSURE=3\nEXPOSURE= 0.5\n", None, [2.0; 3]),
+        ("", file, [1.0; 3]),
+        ("EXPOSURE=2\nCOLORCORR= 1 2 4\n", None, [2.0, 4.0, 8.0]),
+    ] {
+        let photo = settled(header, asked).unwrap();
+        let want = [0, 1, 2].map(|c| 179.0 * shares[c] / factors[c]);
+        let close = |got: [f64; 3]| got.iter().zip(want).all(|(got, want)| (got / want - 1.0).abs() < 1e-12);
+        assert!(close(weights(&photo)), "{header}: {:?} for {want:?}", weights(&photo));
+        if asked.is_none() {
+            assert!(close(weights(&written_and_read(&photo))), "{header}, written");
+        }
+    }
+    assert_eq!(settled("", None).unwrap().luminance_scale(), None, "no line says it");
+    // Of XYZ, Y is luminance; the written file is of RGB again.
+    let photo = settled("FORMAT=32-bit_rle_xyze\nEXPOSURE=0.5\n", None).unwrap();
+    let y = 2.0 * 64.0 / 256.0;
+    // RGBE has eight bits for the brightest of a pixel's colours, here blue.
+    for (photo, off) in [(&photo, 1e-3), (&written_and_read(&photo), 0.04)] {
+        let got = photo.luminance_scale().unwrap().of(&photo.pixels[5]);
+        assert!((got / y - 1.0).abs() < off, "{got} for {y}");
+    }
+    // Given, it replaces what the header said.
+    let photo = settled("EXPOSURE=4\nCOLORCORR=1 2 1\n", Some(WhiteLuminance::Given(50.0))).unwrap();
+    let again = written_and_read(&photo);
+    assert!((again.luminance_scale().unwrap().cd_m2_per_unit - 50.0).abs() < 1e-9);
+}
+
+#[test]
+fn exposures_that_are_none_tell_nothing() {
+    for header in ["EXPOSURE=0\n", "EXPOSURE=-1\nEXPOSURE=-1\n", "EXPOSURE=x\n", "EXPOSURE=nan\n", "COLORCORR=1 0 1\n"]
+    {
+        let photo = settled(header, None).unwrap();
+        assert_eq!(photo.luminance_scale(), None, "{header}");
+        assert!(photo.source.notes[0].contains("EXPOSURE or COLORCORR"), "{header}: {:?}", photo.source.notes);
+        assert!(settled(header, Some(WhiteLuminance::File)).is_err(), "{header}");
+        assert!(settled(header, Some(WhiteLuminance::Given(2.0))).unwrap().source.notes.is_empty(), "{header}");
+    }
 }
 
 #[test]

@@ -1,6 +1,9 @@
-//! `vglare info`: what there is to compute on.
+//! `vglare info`: what there is to compute on, or what is known of a photo.
+
+mod photo;
 
 use std::io::{self, Write};
+use std::path::PathBuf;
 use std::rc::Rc;
 
 use comfy_table::{CellAlignment, Table, presets};
@@ -9,13 +12,22 @@ use serde::Serialize;
 use crate::Result;
 use crate::gpu::precision::{self, Precision};
 use crate::gpu::{Backend, Device, Info};
+use crate::options::ReadArgs;
 use crate::terminal::stdout;
 
-/// Show the renderer, its limits, and which backends work
+/// Show the renderer, its limits, and which backends work; or what a photo's file says of itself
 ///
-/// For a backend that does not work, says why, and which Debian packages would mend it.
+/// For a backend that does not work, says why, and which Debian packages would mend it. Of a photo, says how it is stored, what its
+/// numbers mean, in cd/m² too where the file names that, and what it spans.
 #[derive(Debug, clap::Args)]
 pub struct Args {
+    /// A photo, in place of the renderer
+    #[arg(value_name = "PHOTO", conflicts_with = "precision")]
+    photo: Option<PathBuf>,
+
+    #[command(flatten)]
+    reading: ReadArgs,
+
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -39,12 +51,15 @@ struct Report {
     debian_packages: &'static str,
 }
 
-/// Prints what each backend says of itself.
+/// Prints what each backend says of itself, or what is known of a photo.
 ///
 /// # Errors
-/// Where standard output cannot be written, or the precision cannot be measured. A backend that does not work is no
+/// Where standard output cannot be written, the precision cannot be measured, or the photo cannot be read. A backend that does not work is no
 /// error here.
 pub fn run(args: &Args) -> Result<()> {
+    if let Some(path) = &args.photo {
+        return photo::run(path, args.reading, args.json);
+    }
     let reports: Vec<Report> =
         Backend::ALL.into_iter().map(|backend| report(backend, args.precision)).collect::<Result<_>>()?;
     if args.json { stdout::json(|out| json(out, &reports)) } else { stdout::print(|out| text(out, &reports)) }

@@ -1,10 +1,11 @@
 //! Charts: what is on them. `paint` draws them, `axis` places the numbers, `field` makes pictures of scalar fields; `sheet` is
-//! for drawings that have no axes.
+//! for drawings that have no axes, `legend` for fields in false colours there.
 
 mod axis;
 mod field;
 mod kind;
 mod layout;
+mod legend;
 mod line;
 mod paint;
 mod sheet;
@@ -15,6 +16,7 @@ pub use crate::false_colour::Map;
 pub use axis::Axis;
 pub use field::{Scalar, side_by_side};
 pub use kind::Kind;
+pub(crate) use kind::{png_bytes, write_png};
 pub use sheet::{Anchor, Shape, Sheet, text_width};
 
 use crate::Result;

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 use std::io::Cursor;
+use std::path::Path;
 
 use image::{ImageFormat, RgbImage};
 use plotters::coord::Shift;
@@ -10,11 +11,11 @@ use plotters::prelude::{BitMapBackend, DrawingArea, DrawingBackend, IntoDrawingA
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color as _, ShapeStyle};
 
-use super::Colour;
 use super::line::{clipped, dashes};
 use super::paint::{self, BITMAP_DROP, FINE, failed, font, rgb};
-use crate::Result;
+use super::{Colour, Kind, write_png};
 use crate::printable::printable;
+use crate::{Result, target};
 
 /// A place, in pixels from the left and from the top.
 type Point = [f64; 2];
@@ -119,6 +120,17 @@ impl Sheet {
         self.shapes.push(Shape::Text { text, at, size, colour, anchor });
     }
 
+    /// Writes the sheet.
+    ///
+    /// # Errors
+    /// [`crate::Error::Chart`] where it cannot be drawn, [`crate::Error::Write`] and [`crate::Error::Exists`] where it cannot be written.
+    pub fn write(&self, path: &Path, kind: Kind, overwrite: bool) -> Result<()> {
+        match kind {
+            Kind::Svg => target::write_text(path, &self.svg()?, overwrite),
+            Kind::Png => write_png(path, &self.picture()?, overwrite),
+        }
+    }
+
     /// The sheet as pixels.
     ///
     /// # Errors
@@ -169,7 +181,7 @@ impl Sheet {
         Ok(format!("{}>\n{below}{rest}", open.replacen(&size([width, height]), &size(self.size), 1)))
     }
 
-    fn pictures(&self) -> impl Iterator<Item = (&RgbImage, [u32; 2])> {
+    pub(super) fn pictures(&self) -> impl Iterator<Item = (&RgbImage, [u32; 2])> {
         self.shapes.iter().filter_map(|shape| match shape {
             Shape::Picture { picture, at } => Some((picture, *at)),
             _ => None,

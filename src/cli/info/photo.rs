@@ -1,0 +1,108 @@
+//! What a photo's file says of itself.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::Result;
+use crate::choices::Projection;
+use crate::options::ReadArgs;
+use crate::photo::{self, Facts, LuminanceScale, Photo};
+use crate::terminal::{digits, stderr, stdout};
+
+#[derive(Serialize)]
+struct Report {
+    file: String,
+    format: &'static str,
+    depth: &'static str,
+    layer: Option<String>,
+    picture: [u32; 2],
+    window: [i64; 4],
+    pixel_aspect: f64,
+    primaries: String,
+    display_referred: bool,
+    /// The shares of red, green and blue in luminance.
+    luminance_weights: [f64; 3],
+    /// What the numbers are in cd/m², where that is known.
+    luminance: Option<LuminanceScale>,
+    fov: Option<f64>,
+    fov_from: Option<String>,
+    notes: Vec<String>,
+}
+
+/// Reads a photo and prints what is known of it.
+///
+/// # Errors
+/// Those of [`photo::read_with`], and where standard output cannot be written.
+pub fn run(path: &Path, reading: ReadArgs, as_json: bool) -> Result<()> {
+    let report = report(path, photo::read_with(path, &reading.options())?);
+    if as_json {
+        return stdout::json(|out| {
+            serde_json::to_writer_pretty(&mut *out, &report)?;
+            writeln!(out)
+        });
+    }
+    stderr::warn(&report.notes);
+    stdout::print(|out| text(out, &report))
+}
+
+fn report(path: &Path, photo: Photo) -> Report {
+    let Facts { frame, format, depth, picture } = photo.facts();
+    let (window, mut notes) = (frame.window, photo.source.notes.clone());
+    let view = photo.view().unwrap_or_else(|doubt| {
+        notes.push(doubt);
+        None
+    });
+    let primaries = match (&photo.source.space, photo.source.primaries) {
+        (Some(space), _) => format!("Rec. 709, converted from {space}"),
+        (None, None) => "Rec. 709".to_owned(),
+        (None, Some(primaries)) => primaries.title().unwrap_or("of its own").to_owned(),
+    };
+    Report {
+        file: path.display().to_string(),
+        format,
+        depth,
+        layer: picture,
+        picture: [frame.width, frame.height],
+        window: [window.x.into(), window.y.into(), window.width.into(), window.height.into()],
+        pixel_aspect: frame.pixel_aspect,
+        primaries,
+        display_referred: photo.source.display_referred,
+        luminance_weights: photo.luminance_weights(),
+        luminance: photo.luminance_scale(),
+        fov: view.as_ref().map(|view| view.across(&frame, Projection::Rectilinear)),
+        fov_from: view.map(|view| view.from),
+        notes,
+    }
+}
+
+fn text(out: &mut dyn Write, report: &Report) -> io::Result<()> {
+    let Report { format, depth, picture: [width, height], window: [left, top, columns, rows], .. } = report;
+    writeln!(out, "{}", report.file)?;
+    writeln!(out, "  format             {format}, {depth}")?;
+    report.layer.iter().try_for_each(|layer| writeln!(out, "  layer              {layer}"))?;
+    writeln!(out, "  picture            {width} x {height}")?;
+    if [*left, *top, *columns, *rows] != [0, 0, i64::from(*width), i64::from(*height)] {
+        writeln!(out, "  stored             {columns} x {rows} from column {left}, row {top}")?;
+    }
+    if report.pixel_aspect != 1.0 {
+        writeln!(out, "  pixels             {:.4} times as wide as high", report.pixel_aspect)?;
+    }
+    let numbers = if report.display_referred { "made for a display, in linear light" } else { "scene-linear" };
+    writeln!(out, "  numbers            {numbers}")?;
+    writeln!(out, "  primaries          {}", report.primaries)?;
+    let [red, green, blue] = report.luminance_weights;
+    writeln!(out, "  luminance          {red:.4} R + {green:.4} G + {blue:.4} B")?;
+    match &report.luminance {
+        Some(scale) => writeln!(out, "  cd/m²              {} of white, {}", digits(scale.cd_m2_per_unit), scale.from)?,
+        None => writeln!(
+            out,
+            "  cd/m²              not known: the file does not name them, and --luminance of other commands may"
+        )?,
+    }
+    match report.fov.zip(report.fov_from.as_ref()) {
+        Some((fov, from)) => writeln!(out, "  field of view      {fov:.2}° across, {from}"),
+        None => writeln!(out, "  field of view      not known"),
+    }
+}
