@@ -10,6 +10,8 @@ mod line;
 mod paint;
 mod sheet;
 
+use std::path::Path;
+
 use image::RgbImage;
 
 pub use crate::false_colour::Map;
@@ -19,7 +21,7 @@ pub use kind::Kind;
 pub(crate) use kind::{png_bytes, write_png};
 pub use sheet::{Anchor, Shape, Sheet, text_width};
 
-use crate::Result;
+use crate::{Error, Result, target};
 
 /// A colour, sRGB.
 pub type Colour = [u8; 3];
@@ -228,6 +230,22 @@ impl Chart {
     /// [`crate::Error::Chart`] where it cannot be drawn.
     pub fn svg(&self) -> Result<Option<String>> {
         if self.backdrop.is_some() || self.bar.is_some() { Ok(None) } else { paint::svg(self).map(Some) }
+    }
+
+    /// Writes the chart.
+    ///
+    /// # Errors
+    /// [`crate::Error::Chart`] where it cannot be drawn, [`Error::Write`] and [`Error::Exists`] where it cannot be written: one that has
+    /// pictures in it is no SVG.
+    pub fn write(&self, path: &Path, kind: Kind, overwrite: bool) -> Result<()> {
+        match kind {
+            Kind::Png => write_png(path, &self.picture()?, overwrite),
+            Kind::Svg => {
+                let svg =
+                    self.svg()?.ok_or_else(|| Error::write(path, "a chart with pictures in it is written as .png"))?;
+                target::write_text(path, &svg, overwrite)
+            }
+        }
     }
 
     /// The numbers of all series: side by side where all share their x, otherwise below each other.

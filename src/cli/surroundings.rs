@@ -183,7 +183,7 @@ impl Seen<'_> {
         let field = self.outside.veil();
         let hood = self.surroundings.hood;
         let even = self.outside.even(look.strength * hood.stray());
-        let whole = glare.as_ref().map(|glare| mean(glare));
+        let whole = glare.as_ref().map(|glare| glare.mean());
         for photo in picture.into_iter().chain(glare) {
             let window = photo.frame.window;
             let before = [-window.x, -window.y].map(|side| side.max(0) as u32);
@@ -214,15 +214,6 @@ impl Seen<'_> {
             milliseconds,
         }
     }
-}
-
-/// The mean of what a photo's picture shows, RGB.
-fn mean(photo: &Photo) -> [f64; 3] {
-    let mut sum = [0.0; 3];
-    for row in 0..photo.height() {
-        photo.picture_row(row).iter().for_each(|pixel| (0..3).for_each(|k| sum[k] += f64::from(pixel[k])));
-    }
-    sum.map(|sum| sum / (f64::from(photo.width()) * f64::from(photo.height())))
 }
 
 impl std::fmt::Display for StrayTold {

@@ -274,6 +274,15 @@ impl Photo {
         self.source.primaries.map(|primaries| primaries.to_rec709())
     }
 
+    /// The mean of what the picture shows, RGB.
+    pub(crate) fn mean(&self) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for row in 0..self.height() {
+            self.picture_row(row).iter().for_each(|pixel| (0..3).for_each(|k| sum[k] += f64::from(pixel[k])));
+        }
+        sum.map(|sum| sum / (f64::from(self.width()) * f64::from(self.height())))
+    }
+
     /// The pixels of row `y` of the picture, transparent black where none are stored.
     pub(crate) fn picture_row(&self, y: u32) -> std::borrow::Cow<'_, [[f32; 4]]> {
         let window = self.frame.window;

@@ -3,6 +3,7 @@
 mod frame;
 mod outputs;
 mod parts;
+mod plot;
 mod report;
 mod run;
 mod shot;
@@ -41,8 +42,8 @@ pub struct Args {
     photo: Option<PathBuf>,
 
     /// The pictures, as out.####.png: .exr .hdr .pfm .tif .tiff .png .jpg .jpeg. ####, or %04d, becomes the frame's number, {name} the
-    /// path's name. Where --glare or --report is given, it may be left out
-    #[arg(short, long, value_name = "PATTERN", required_unless_present_any = ["glare", "report"])]
+    /// path's name. Where --glare, --plot or --report is given, it may be left out
+    #[arg(short, long, value_name = "PATTERN", required_unless_present_any = ["glare", "plot", "report"])]
     output: Option<PathBuf>,
 
     /// Replace files that exist
@@ -166,6 +167,10 @@ struct OutputArgs {
     /// Write the glare alone, as it was added; scene-linear, in any format
     #[arg(long, value_name = "PATTERN")]
     glare: Option<PathBuf>,
+
+    /// Draw the mean glare of each frame over the frames, as .svg or .png
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
 
     /// Write what was computed, how, how exactly and how fast, frame by frame, as JSON
     #[arg(long, value_name = "FILE")]

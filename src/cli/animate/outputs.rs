@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::Args;
 use super::shot::Shot;
+use crate::chart::Kind;
 use crate::cli::apply::names::Names;
 use crate::cli::apply::outputs::room;
 use crate::photo::{self, Photo};
@@ -40,7 +41,10 @@ pub fn paths(args: &Args, shot: &Shot) -> Result<Vec<Paths>> {
             return Err(Error::Exists { path: path.clone() });
         }
     }
-    args.outputs.report.as_ref().map_or(Ok(()), |report| target::check(report, args.force))?;
+    if let Some(plot) = &args.outputs.plot {
+        Kind::of(plot)?;
+    }
+    args.outputs.plot.iter().chain(&args.outputs.report).try_for_each(|path| target::check(path, args.force))?;
     Ok(paths)
 }
 
@@ -82,6 +86,7 @@ fn names(given: &Path, option: &str) -> Result<Names> {
 /// Whether every output is a file of its own, and nothing that is read.
 fn apart(args: &Args, paths: &[Paths]) -> Result<()> {
     let report = args.outputs.report.iter().map(|path| ("--report", path.as_path()));
+    let report = report.chain(args.outputs.plot.iter().map(|path| ("--plot", path.as_path())));
     let pictures = paths.iter().flat_map(|paths| {
         let picture = paths.picture.iter().map(|path| ("--output", path.as_path()));
         picture.chain(paths.glare.iter().map(|path| ("--glare", path.as_path())))

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::frame::{Base, Drawn, FrameTold};
 use super::outputs::Paths;
+use super::plot::{self, Mean};
 use super::shot::{Lit, Shot};
 use super::told::{ErrorTold, PlanTold, Told};
 use super::{Args, Outside, Seen, summary};
@@ -43,6 +44,8 @@ pub struct FrameLog {
     /// The frame that it is the same as.
     pub same: Option<usize>,
     pub told: FrameTold,
+    /// Of its glare, where that is wanted.
+    pub mean: Option<Mean>,
     pub written_ms: f64,
 }
 
@@ -93,7 +96,11 @@ impl<'a> Log<'a> {
             Some(_) => FrameTold { milliseconds: 0.0, stages: Vec::new(), ..drawn.told.clone() },
             None => drawn.told.clone(),
         };
-        self.frames.push(FrameLog { same, told, written_ms: started.elapsed().as_secs_f64() * 1e3 });
+        let mean = match same {
+            Some(same) => self.frames[same].mean,
+            None => drawn.glare.as_ref().map(Mean::of),
+        };
+        self.frames.push(FrameLog { same, told, mean, written_ms: started.elapsed().as_secs_f64() * 1e3 });
         Ok(())
     }
 
@@ -133,6 +140,13 @@ impl<'a> Log<'a> {
         self.frames.iter().filter(|frame| frame.same.is_none())
     }
 
+    /// What it is of, for a title: the panorama, the photo or the path.
+    pub fn name(&self) -> String {
+        let motion = &self.args.motion;
+        let path = motion.panorama.as_ref().or(self.args.photo.as_ref()).unwrap_or(&motion.path);
+        path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
     pub fn seconds(&self) -> f64 {
         self.started.elapsed().as_secs_f64()
     }
@@ -148,6 +162,9 @@ impl<'a> Log<'a> {
     pub fn finish(self, args: &Args, shot: &Shot, look: &Look) -> Result<()> {
         if let Some(path) = &args.outputs.report {
             target::write_json(path, &Report::new(&self, look), args.force)?;
+        }
+        if let Some(path) = &args.outputs.plot {
+            plot::write(path, &self, shot, args.force)?;
         }
         stderr::warn(&self.warnings);
         if !args.quiet {
@@ -227,6 +244,8 @@ struct FrameReport<'a> {
     plan: Option<&'a PlanTold>,
     error: Option<ErrorTold>,
     veil: Option<VeilError>,
+    /// The mean of the glare over the picture, RGB, where the glare is wanted.
+    glare_mean: Option<[f64; 3]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     surroundings: Option<&'a StrayTold>,
     computed_ms: f64,
@@ -315,7 +334,7 @@ impl<'a> Report<'a> {
 
 impl<'a> FrameReport<'a> {
     fn new(log: &'a Log<'_>, index: usize) -> Self {
-        let (FrameLog { same, told, written_ms }, paths) = (&log.frames[index], &log.paths[index]);
+        let (FrameLog { same, told, mean, written_ms }, paths) = (&log.frames[index], &log.paths[index]);
         let name = |lit: &Lit| match &log.shot.path {
             Path::Lights(lights) => &*lights[lit.light].name,
             Path::Camera(..) => "",
@@ -340,6 +359,7 @@ impl<'a> FrameReport<'a> {
             plan: told.plan.as_ref(),
             error: told.error,
             veil: told.veil,
+            glare_mean: mean.map(|mean| mean.colour),
             surroundings: told.outside.as_ref(),
             computed_ms: told.milliseconds,
             stages: told.stages.iter().map(|&(stage, wall_ms)| Stage { stage, wall_ms }).collect(),

@@ -69,7 +69,7 @@ fn about_lens(out: &mut dyn Write, look: &Look) -> io::Result<()> {
 
 /// A frame in a line.
 fn about_frame(out: &mut dyn Write, shot: &Shot, log: &Log<'_>, index: usize) -> io::Result<()> {
-    let FrameLog { same, told, written_ms } = &log.frames[index];
+    let FrameLog { same, told, written_ms, .. } = &log.frames[index];
     write!(out, "frame    {:>5}", shot.number(index))?;
     if let Some(same) = same {
         return writeln!(out, "  is frame {}", shot.number(*same));

@@ -187,6 +187,29 @@ fn panorama(place: &Workplace) {
     place.write("all.exr", &Photo::new(width as u32, height as u32, (0..width * height).map(pixel).collect()));
 }
 
+/// The plot has the mean of each frame's glare, as the report and the glare itself have it.
+#[test]
+fn the_mean_glare_is_drawn_over_the_frames() {
+    let place = place("time,x,y\n0,-1,0\n1,0.5,0.2\n");
+    animate(&place, "5", &[&SMALL[..], &["--glare", "g.####.exr", "--plot", "mean.svg"]].concat()).succeeded();
+    let report = place.read_json("report.json");
+    for (index, frame) in frames(&report).iter().enumerate() {
+        let glare = photo::read(&place.path(&format!("g.{:04}.exr", index + 1))).unwrap();
+        let mean = glare.pixels.iter().map(|pixel| f64::from(pixel[1])).sum::<f64>() / glare.pixels.len() as f64;
+        let told = frame["glare_mean"][1].as_f64().unwrap();
+        assert!(mean > 0.0 && (told / mean - 1.0).abs() < 1e-6, "{index}: {told} {mean}");
+    }
+    let plot = String::from_utf8(bytes(&place, "mean.svg")).unwrap();
+    assert!(plot.contains("Mean glare, path.csv") && plot.contains("units of the photo"), "{plot}");
+    // Alone, too; and nothing is written where it cannot be.
+    let words = ["animate", "--path", "path.csv", "--frames", "2", "--lens", "mirror.toml", "--frame", "96x54"];
+    place.vglare(&[&words[..], &["--plot", "alone.png"]].concat()).succeeded();
+    assert!(image::open(place.path("alone.png")).is_ok());
+    place.vglare(&[&words[..], &["--plot", "mean.jpg", "-o", "n.####.png"]].concat()).failed(1, &["drawing"]);
+    place.vglare(&[&words[..], &["--plot", "alone.png", "-o", "n.####.png"]].concat()).failed(1, &["alone.png"]);
+    assert!(!place.path("n.0001.png").exists());
+}
+
 #[test]
 fn a_camera_sees_what_lies_where_it_looks() {
     let place = place("time,yaw,pitch,roll\n0,90,0,0\n1,180,0,0\n2,360,0,45\n");
