@@ -15,17 +15,18 @@ impl Look {
     /// # Errors
     /// [`Error::Usage`] where the unit is the degree and nothing says what the picture spans.
     pub fn frame(&self, photo: &Photo) -> Result<Frame> {
-        let frame = photo.frame;
+        self.in_unit(photo.frame, || self.view(photo, "the unit of lengths is the degree"))
+    }
+
+    /// A frame with lengths in the look's unit; `view` says how its picture is seen, where that matters.
+    pub(crate) fn in_unit(&self, frame: Frame, view: impl FnOnce() -> Result<View>) -> Result<Frame> {
         // In half picture heights.
         let across = frame.pixel_aspect * f64::from(frame.width) / f64::from(frame.height);
         Ok(frame.in_units_of(match self.unit {
             LengthUnit::Height => 1.0,
             LengthUnit::ShortSide => across.min(1.0),
             LengthUnit::Diagonal => across.hypot(1.0),
-            LengthUnit::Degrees => {
-                let view = self.view(photo, "the unit of lengths is the degree")?;
-                2.0 * view.focal * 1.0f64.to_radians() / f64::from(frame.height)
-            }
+            LengthUnit::Degrees => 2.0 * view()?.focal * 1.0f64.to_radians() / f64::from(frame.height),
         }))
     }
 

@@ -8,6 +8,7 @@
 //! | `path`, `matrix` | the surfaces that reflect light on its way → what that way does to rays near the axis |
 //! | `ghosts`, `clip`, `colour` | a system → its ghosts: place, size, share of the light, and the rims that cut them |
 //! | `trace`, `spot` | a ray → where it goes, exactly; a distant light → its image, by many of them |
+//! | `back`, `bright` | a point of the sensor → where its light is from, exactly; what a bright field sends there, by many rays |
 //!
 //! Lengths are in mm, wavelengths in nm, angles in degrees unless they are said to be tangents. Surfaces are numbered from 1,
 //! as in files. The axis is z, from the scene to the sensor; a radius is positive where its centre lies towards the sensor,
@@ -16,6 +17,8 @@
 //! The model: surfaces of revolution about one axis, spheres and conics; media without absorption; rays, not waves, save
 //! within the films of a coating; distant lights. The sensor reflects nothing, and neither do barrel and blades.
 
+mod back;
+mod bright;
 mod clip;
 mod coating;
 mod colour;
@@ -35,6 +38,8 @@ mod system;
 mod thin_film;
 mod trace;
 
+pub use back::Origin;
+pub use bright::{BrightField, Irradiance};
 pub use clip::{Clip, common_area, common_middle};
 pub use coating::{Coating, DESIGN_NM};
 pub use colour::Sensitivity;

@@ -77,6 +77,13 @@ impl Path {
         steps.extend((next..self.surfaces).map(through(true)));
         steps
     }
+
+    /// All that happens to light that goes the other way, from the sensor to the scene, in its order.
+    pub(super) fn steps_back(&self) -> Vec<Step> {
+        // What reflects it does so from the side that it comes from, either way.
+        let back = |step: Step| Step { forward: step.forward == step.reflects, ..step };
+        self.steps().into_iter().rev().map(back).collect()
+    }
 }
 
 #[cfg(test)]

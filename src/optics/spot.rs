@@ -9,13 +9,13 @@ use super::trace::Tracer;
 use crate::chance::Chance;
 
 /// Independent estimates from which an interval is made.
-const REPLICATES: usize = 16;
+pub(super) const REPLICATES: usize = 16;
 /// Student's t for 15 degrees of freedom, of which 99 % are within (Abramowitz & Stegun, table 26.10).
-const STUDENT_99: f64 = 2.947;
+pub(super) const STUDENT_99: f64 = 2.947;
 /// Cells to a side of the grid of rays that looks for the light.
 const PILOT: usize = 64;
 /// Rays that may be asked for.
-const SAMPLES: [usize; 2] = [REPLICATES * 4, 1 << 30];
+pub(super) const SAMPLES: [usize; 2] = [REPLICATES * 4, 1 << 30];
 
 /// The image of a distant light along a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -192,7 +192,7 @@ fn spot(replicates: &[Sums; REPLICATES], each: usize, area: f64) -> Spot {
 }
 
 /// The digits of `k` in a base, behind the point in reverse order: Halton's sequence.
-fn radical_inverse(mut k: usize, base: usize) -> f64 {
+pub(super) fn radical_inverse(mut k: usize, base: usize) -> f64 {
     let (mut value, mut digit) = (0.0, 1.0);
     while k > 0 {
         digit /= base as f64;

@@ -35,22 +35,22 @@ pub struct Hit {
 
 /// A ray, by a point of it and its direction, which has the length 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Ray {
-    origin: DVec3,
-    direction: DVec3,
+pub(super) struct Ray {
+    pub origin: DVec3,
+    pub direction: DVec3,
 }
 
 /// A complex electric field; of power 1 where its square is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Field {
+pub(super) struct Field {
     re: DVec3,
     im: DVec3,
 }
 
 /// A ray, and the fields along it of light that came in two crossed polarisations.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Light {
-    ray: Ray,
+pub(super) struct Light {
+    pub ray: Ray,
     fields: [Field; 2],
 }
 
@@ -114,20 +114,19 @@ impl<'a> Tracer<'a> {
         }
         let at_pupil = pupil.extend(self.system.first_order().entrance_pupil.z);
         let origin = at_pupil - direction * (at_pupil.z / direction.z);
-        let fields = <[DVec3; 2]>::from(direction.any_orthonormal_pair()).map(Field::real);
-        let mut light = Light { ray: Ray { origin, direction }, fields };
+        let mut light = Light::unpolarised(Ray { origin, direction });
         for step in steps {
             light = self.step(step, &light)?;
             tell(light.ray.origin);
         }
         let Ray { origin, direction } = light.ray;
         let position = (origin + direction * ((self.system.sensor_z() - origin.z) / direction.z)).truncate();
-        let weight = 0.5 * light.fields.iter().map(Field::power).sum::<f64>();
+        let weight = light.power();
         (direction.z > 0.0 && position.is_finite() && weight > 0.0).then_some(Hit { position, weight })
     }
 
     /// The light behind a surface.
-    fn step(&self, step: &Step, light: &Light) -> Option<Light> {
+    pub(super) fn step(&self, step: &Step, light: &Light) -> Option<Light> {
         let surface = &self.system.surfaces()[step.surface];
         let incident = light.ray.direction;
         let (origin, normal) = surface.meet(light.ray, step.forward)?;
@@ -148,6 +147,18 @@ impl<'a> Tracer<'a> {
         let [old, new] = [incident, direction].map(|way| across.cross(way));
         let fields = light.fields.map(|field| field.turned([across, old], [across, new], [s, p]));
         Some(Light { ray: Ray { origin, direction }, fields })
+    }
+}
+
+impl Light {
+    /// Unpolarised light of power 1.
+    pub fn unpolarised(ray: Ray) -> Self {
+        Self { ray, fields: <[DVec3; 2]>::from(ray.direction.any_orthonormal_pair()).map(Field::real) }
+    }
+
+    /// What is left of its power.
+    pub fn power(&self) -> f64 {
+        0.5 * self.fields.iter().map(Field::power).sum::<f64>()
     }
 }
 

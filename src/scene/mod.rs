@@ -33,6 +33,7 @@ pub use file::{SceneFile, read_lens, read_lights, read_lights_in, read_scene, un
 pub use find::{FindOptions, Found, find, find_shining};
 pub use knee::{Knee, brightest};
 pub use lens::{Lens, LensVeil, ghosts};
+pub(crate) use optical::Rimmed;
 pub use optical::{NamedLens, Optical, OpticsSection, SENSOR, named_lens};
 pub use recover::{END as DISPLAY_WHITE, Recover, Recovered, Recovery, clipped, recover};
 pub(crate) use referred::referred;

@@ -1,5 +1,6 @@
 //! `vglare measure`: how black a black spot in a bright field is, through a look or in a photo.
 
+mod closed;
 mod draw;
 mod field;
 mod spots;
@@ -21,6 +22,7 @@ use crate::terminal::progress::Progress;
 use crate::terminal::{stderr, stdout};
 use crate::{Error, Result, target};
 
+use closed::ClosedArgs;
 use field::{Field, Place};
 use spots::SpotArg;
 use told::Told;
@@ -31,6 +33,9 @@ use told::Told;
 /// as the spot's surroundings are in the picture; the index is what falls on the centre of a spot, as a share of the mean on the field at one and a half
 /// diameters from there. The chart is seen through a look as `vglare apply` computes it, every pixel a source, and each index has the bound that
 /// follows from the look's; the field ends with the picture.
+///
+/// Of a lens that is known by its surfaces there is the same index in closed form, too, by integrals of its ghosts and its veil over the field, without a
+/// picture; and by exact rays with --rays.
 ///
 /// With a photo of such a chart, the index of each --spot, with its standard error by what pixels differ.
 ///
@@ -75,6 +80,9 @@ pub struct Args {
     strength: Option<f64>,
 
     #[command(flatten)]
+    closed: ClosedArgs,
+
+    #[command(flatten)]
     reading: ReadArgs,
 
     #[command(flatten)]
@@ -92,6 +100,8 @@ Examples:
   vglare measure                                              The default preset
   vglare measure --preset vintage-uncoated -o index.svg
   vglare measure --lens double-gauss --coating none --fstop 4
+  vglare measure --lens tessar --coating none --fstops 3.5,5.6,8 --angles 0,5,10,15
+  vglare measure --lens double-gauss --method closed --rays 4096
   vglare measure --veil cie --age 60 --fov 50 --lens none
   vglare measure --preset vintage-uncoated --luminance 2000   Spot and field in cd/m², too
   vglare measure chart.exr --spot 480,270,40 --spot 900,60,40";
@@ -148,15 +158,39 @@ pub fn run(args: &Args) -> Result<()> {
     outputs.iter().try_for_each(|(_, path)| target::check(path, args.force))?;
     let look = look(args)?;
     let white = field_luminance(args)?;
+    let [rendered, in_closed_form] = args.closed.methods(&look)?;
+    if args.output.is_some() && !rendered {
+        return Err(Error::Usage("--output draws what is rendered: leave it out, or give --method both".into()));
+    }
+    if white.is_some() && !rendered {
+        return Err(Error::Usage("--luminance is of what is rendered: leave it out, or give --method both".into()));
+    }
     let fov = look.fov.unwrap_or(USUAL_FOV);
     let field = Field::new(args.pixels, fov);
     let mut diameters = args.diameters.clone();
     diameters.sort_by(f64::total_cmp);
-    let places = field.places(diameters[diameters.len() - 1], diameters[0])?;
+    // Spots at angles need no pixels.
+    let places = match args.closed.has_angles() {
+        true => Vec::new(),
+        false => field.places(diameters[diameters.len() - 1], diameters[0])?,
+    };
     if let Some(path) = &args.chart {
         let options = WriteOptions { overwrite: args.force, ..WriteOptions::default() };
         photo::write(path, &field.photo(&places, args.diameters[0], 1.0), &options)?;
     }
+    let closed = in_closed_form.then(|| args.closed.indices(&look, &field, &places, &diameters)).transpose()?;
+    let all = if rendered { all(args, &look, &field, &places, &diameters)? } else { Vec::new() };
+    let closed = closed.as_deref();
+    let (look, field, places, diameters, all) = (&look, &field, &places, &diameters, &all);
+    let told = Told { look, field, fov, places, diameters, all, white, closed };
+    if let (Some(path), Some(kind)) = (&args.output, kind) {
+        draw::write(path, kind, &told, args.force)?;
+    }
+    if args.json { told.json() } else { stdout::print(|out| told.table(out)) }
+}
+
+/// The index of each place by a chart that is rendered, diameter by diameter.
+fn all(args: &Args, look: &Look, field: &Field, places: &[Place], diameters: &[f64]) -> Result<Vec<Index>> {
     let progress = Progress::start(args.json);
     progress.say("opening the device");
     let open = || -> Result<Computer> {
@@ -166,16 +200,11 @@ pub fn run(args: &Args) -> Result<()> {
     };
     let mut computer = look.renders().then(open).transpose()?;
     let mut all = Vec::new();
-    for &diameter in &diameters {
+    for &diameter in diameters {
         progress.say(format!("spots of {diameter}°"));
-        all.extend(indices(&look, &field, &places, diameter, 1.0, computer.as_mut())?);
+        all.extend(indices(look, field, places, diameter, 1.0, computer.as_mut())?);
     }
-    drop(progress);
-    let told = Told { look: &look, field: &field, fov, places: &places, diameters: &diameters, all: &all, white };
-    if let (Some(path), Some(kind)) = (&args.output, kind) {
-        draw::write(path, kind, &told, args.force)?;
-    }
-    if args.json { told.json() } else { stdout::print(|out| told.table(out)) }
+    Ok(all)
 }
 
 /// What the field of the chart is in cd/m², where that is given.

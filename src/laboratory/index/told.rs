@@ -7,6 +7,7 @@ use comfy_table::{CellAlignment, Table, presets};
 use serde::Serialize;
 
 use super::Index;
+use super::closed::{self, Closed};
 use super::field::{Field, Place, RING};
 use super::spots::Spot;
 use crate::Result;
@@ -27,6 +28,8 @@ pub struct Told<'a> {
     pub all: &'a [Index],
     /// cd/m² of the chart's field before any glare, where that is given.
     pub white: Option<f64>,
+    /// Closed forms, in the same order where there are both.
+    pub closed: Option<&'a [Closed]>,
 }
 
 /// What was measured, and in cd/m² where that is known.
@@ -49,7 +52,7 @@ impl<T: Serialize> WithLuminance<T> {
 }
 
 #[derive(Serialize)]
-struct Json {
+struct Json<'a> {
     vglare: &'static str,
     lens: String,
     veil: Option<String>,
@@ -61,7 +64,10 @@ struct Json {
     /// cd/m² of the field before any glare.
     #[serde(skip_serializing_if = "Option::is_none")]
     field_cd_m2: Option<f64>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     spots: Vec<WithLuminance<Index>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    closed: Option<&'a [Closed]>,
 }
 
 /// Rec. 709's weights of luminance.
@@ -73,7 +79,9 @@ impl Told<'_> {
     /// The look, in a few words.
     pub fn name(&self) -> String {
         let veil = self.veil().map_or(String::new(), |veil| format!(", veil {veil}"));
-        let stop = self.f_number().map_or(String::new(), |number| format!(" at f/{number:.1}"));
+        let closed = self.closed.unwrap_or_default();
+        let several = closed.windows(2).any(|pair| pair[0].f_number != pair[1].f_number);
+        let stop = self.f_number().filter(|_| !several).map_or(String::new(), |number| format!(" at f/{number:.1}"));
         format!("{}{stop}{veil}", self.lens())
     }
 
@@ -107,33 +115,51 @@ impl Told<'_> {
             ring_diameters: RING,
             field_cd_m2: self.white,
             spots: self.all.iter().map(|spot| WithLuminance::new(*spot, self.in_cd_m2(spot))).collect(),
+            closed: self.closed,
         };
         print(&json)
     }
 
-    /// A row for each place, a column for each diameter.
+    /// A row for each place, a column for each diameter, and one for its closed form; then what rays tell.
     pub fn table(&self, out: &mut dyn Write) -> io::Result<()> {
         let [width, height] = self.field.size;
-        writeln!(out, "{}: {:.1}° across {width} × {height} pixels, every pixel a source", self.name(), self.fov)?;
+        let across = format!("{:.1}° across {width} × {height} pixels", self.fov);
+        let closed = self.closed.unwrap_or_default();
+        if self.all.is_empty() {
+            writeln!(out, "{}: {across}, in closed form", self.name())?;
+            closed::print(closed, self.diameters, out)?;
+        } else {
+            writeln!(out, "{}: {across}, every pixel a source", self.name())?;
+            self.rendered(closed, out)?;
+        }
+        writeln!(
+            out,
+            "The luminance of a spot's centre over that of the field {RING} diameters from it; in the manner of ISO 9358."
+        )?;
+        closed::rays_table(closed, out)?;
+        self.white.map_or(Ok(()), |white| self.luminances(out, white))
+    }
+
+    fn rendered(&self, closed: &[Closed], out: &mut dyn Write) -> io::Result<()> {
         let mut table = Table::new();
         table.load_style(presets::NOTHING);
-        let spots = self.diameters.iter().map(|diameter| format!("{diameter}° spot, %"));
+        let beside = if closed.is_empty() { &[][..] } else { &["closed form"] };
+        let spots = self.diameters.iter().flat_map(|diameter| {
+            std::iter::once(format!("{diameter}° spot, %")).chain(beside.iter().map(|text| (*text).to_owned()))
+        });
         table.set_header(["place".to_owned(), "off axis".to_owned()].into_iter().chain(spots));
         for (number, place) in self.places.iter().enumerate() {
             let of = self.all.iter().skip(number).step_by(self.places.len());
-            let cells = of.map(|Index { index, bound, .. }| {
-                format!("{:.3} ± {:.3}", 100.0 * luminance(*index), 100.0 * luminance(*bound))
+            let mut beside = closed::columns(closed, number, self.places.len()).into_iter();
+            let cells = of.flat_map(|Index { index, bound, .. }| {
+                let rendered = format!("{:.3} ± {:.3}", 100.0 * luminance(*index), 100.0 * luminance(*bound));
+                std::iter::once(rendered).chain(beside.next())
             });
             let off = format!("{:.1}°", self.field.off_axis(place.pixel));
             table.add_row([place.name.to_owned(), off].into_iter().chain(cells));
         }
         table.column_iter_mut().skip(1).for_each(|column| column.set_cell_alignment(CellAlignment::Right));
-        writeln!(out, "{}", table.trim_fmt())?;
-        writeln!(
-            out,
-            "The luminance of a spot's centre over that of the field {RING} diameters from it; in the manner of ISO 9358."
-        )?;
-        self.white.map_or(Ok(()), |white| self.luminances(out, white))
+        writeln!(out, "{}", table.trim_fmt())
     }
 
     /// The same places in cd/m².

@@ -1,5 +1,6 @@
 //! A lens that is known by its surfaces, set as a photographer sets it, and the table of ghosts that it makes on a picture.
 
+mod rimmed;
 mod rows;
 
 use std::fs;
@@ -17,6 +18,8 @@ use crate::frame::Frame;
 use crate::optics::{Coating, GhostOptions, LensFormat, LensGhosts, Prescription, Setup, System};
 use crate::psf::{Name, Parameters};
 use crate::{Error, Result};
+
+pub(crate) use rimmed::Rimmed;
 
 /// Width and height of a sensor, in mm, where none is named: what these lenses are made for.
 pub const SENSOR: [f64; 2] = [36.0, 24.0];
@@ -204,6 +207,13 @@ impl Optical {
         let (tangent, towards) = self.direction(place);
         let at = |(row, path): (&LensGhost, &usize)| rows::cut(row, &self.made.ghosts.ghosts[*path], tangent, towards);
         self.lens.ghosts.par_iter().zip(&*self.paths).map(at).collect()
+    }
+
+    /// The rows of the table, each as it depends on where light is.
+    pub(crate) fn rimmed(&self) -> impl Iterator<Item = Rimmed<'_>> {
+        let (ghosts, (tangent, _)) = (&self.made.ghosts.ghosts, self.direction(DVec2::X));
+        let of = move |(row, &path): (_, &usize)| Rimmed { row, path, ghost: &ghosts[path], tangent };
+        self.lens.ghosts.iter().zip(&*self.paths).map(of)
     }
 
     /// The ghosts of all lights that are not muted, light by light in the table's order, as rims leave them. Each light has outlines of its

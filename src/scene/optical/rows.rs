@@ -126,7 +126,7 @@ pub(super) fn cut(row: &LensGhost, ghost: &GhostPath, tangent: f64, towards: DVe
 ///
 /// A rim that just touches the opening would take half of what the opening's own edge leaves there. So one that hardly bites lies a few
 /// edges farther out, and ghosts change smoothly as it comes in.
-fn rims(ghost: &GhostPath, edge: f64, tangent: f64, towards: DVec2) -> Vec<Cut> {
+pub(super) fn rims(ghost: &GhostPath, edge: f64, tangent: f64, towards: DVec2) -> Vec<Cut> {
     const FARTHER: f64 = Cut::SPARED;
     let Some((narrowest, others)) = ghost.clips.split_first() else { return Vec::new() };
     let rim = |clip: &Clip| {

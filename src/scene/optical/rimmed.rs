@@ -1,0 +1,37 @@
+//! Rows of a lens's table as they depend on where light is, for integrals over all places: no bell is made for each.
+
+use glam::DVec2;
+
+use super::rows;
+use crate::optics::GhostPath;
+use crate::scene::LensGhost;
+use crate::series::{Bell, Cut};
+
+/// A row of the table, by where the light is.
+pub(crate) struct Rimmed<'a> {
+    /// The row, of light on the axis.
+    pub row: &'a LensGhost,
+    /// Which of the lens's ghosts it is of.
+    pub path: usize,
+    pub(super) ghost: &'a GhostPath,
+    /// Of the angle of light that is a unit from the axis.
+    pub(super) tangent: f64,
+}
+
+impl Rimmed<'_> {
+    /// Whether it matters where the light is.
+    pub fn is_cut(&self) -> bool {
+        self.ghost.clips.len() > 1
+    }
+
+    /// What rims leave of the light of the row, so far from the axis.
+    pub fn left(&self, distance: f64) -> f64 {
+        self.ghost.vignetting(distance * self.tangent).clamp(0.0, 1.0)
+    }
+
+    /// The rims that bite into its iris, in its sizes, of light so far from the axis in the direction of x; none of another bell.
+    pub fn cuts(&self, distance: f64) -> Vec<Cut> {
+        let Bell::Iris(iris) = &self.row.bell else { return Vec::new() };
+        iris.biting(&rows::rims(self.ghost, iris.edge(), distance * self.tangent, DVec2::X))
+    }
+}
