@@ -34,7 +34,7 @@ fn a_real_lens_has_its_closed_form_beside_the_chart() {
     // In so small a field and stopped down no rim cuts ghosts: one of light from anywhere looks like another.
     let narrow = "--lens double-gauss --coating none --fstop 8 --blades 0 --sensor 6x4 --veil none";
     let wide = "--lens triplet --coating none --veil none";
-    for (lens, diameter, close) in [(narrow, "0.5", 1e-3), (wide, "3", 0.1)] {
+    for (lens, diameter, close) in [(narrow, "0.5", 0.02), (wide, "3", 0.2)] {
         let line = format!("measure {lens} --pixels 240x160 --diameters {diameter} --json");
         let told = place.json(&line.split(' ').collect::<Vec<_>>());
         let [spots, closed] = ["spots", "closed"].map(|key| told[key].as_array().unwrap());
