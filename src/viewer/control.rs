@@ -301,6 +301,10 @@ pub fn buttons<T: Copy + PartialEq>(
     let tip = Tip { name, about, span: meanings.join("\n"), reset: called.into() };
     let row = tip.row(ui, |ui| {
         let shown = ui.horizontal_wrapped(|ui| {
+            if choices.len() > 3 {
+                // Closer together, to stay in one row.
+                (ui.spacing_mut().button_padding.x, ui.spacing_mut().item_spacing.x) = (4.0, 2.0);
+            }
             let buttons = choices.iter().map(|(choice, name, meaning)| {
                 let button = ui.selectable_value(value, *choice, *name);
                 // The row's tooltip explains them all.
