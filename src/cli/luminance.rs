@@ -8,6 +8,30 @@ use serde::Serialize;
 use crate::photo::{LuminanceScale, Photo};
 use crate::terminal::digits;
 
+/// How bright a colour of a photo is: in cd/m² where that is known, else in the photo's unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Brightness {
+    /// Of one of each colour.
+    weights: [f64; 3],
+    /// In words.
+    pub unit: &'static str,
+}
+
+impl Brightness {
+    /// By a photo's scale and its primaries.
+    pub fn of(photo: &Photo) -> Self {
+        match photo.luminance_scale() {
+            Some(scale) => Self { weights: scale.weights, unit: "cd/m²" },
+            None => Self { weights: photo.luminance_weights(), unit: "units of the photo" },
+        }
+    }
+
+    /// Of a colour.
+    pub fn at(&self, rgb: [f64; 3]) -> f64 {
+        self.weights.iter().zip(rgb).map(|(weight, part)| weight * part).sum()
+    }
+}
+
 /// The luminance of a picture in cd/m², of its pixels that are finite numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Extent {

@@ -7,6 +7,7 @@ mod found;
 pub mod info;
 pub mod lights;
 mod luminance;
+mod photo_told;
 pub mod plan;
 pub mod presets;
 pub mod remove;

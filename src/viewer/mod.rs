@@ -42,6 +42,7 @@ mod panels;
 mod removing;
 pub mod replay;
 mod shortcuts;
+mod shrink;
 mod stage;
 mod status;
 mod study;

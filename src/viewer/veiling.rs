@@ -8,9 +8,10 @@ use std::time::Instant;
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use super::document::{Document, shrink};
+use super::document::Document;
 use super::loader::Wake;
 use super::model::{Look, same_veil};
+use super::shrink::shrink;
 use super::task::{State, Task};
 use crate::frame::Frame;
 use crate::job::{Ledger, MOST_LAYERS, VeilLayers, VeilSums};

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::Result;
 use crate::chart::{Axis, Kind, Map, Scalar};
+use crate::cli::luminance::Brightness;
 use crate::photo::Photo;
 
 /// Draws the luminance of a photo's glare, in cd/m² where that is known and in the photo's numbers elsewhere, and writes that. `range` is where the
@@ -12,16 +13,13 @@ use crate::photo::Photo;
 /// # Errors
 /// [`crate::Error::Chart`] where it cannot be drawn; those of writing.
 pub fn write(path: &Path, input: &Path, glare: &Photo, range: Option<[f64; 2]>, overwrite: bool) -> Result<()> {
-    let scale = glare.luminance_scale();
-    let weights = scale.as_ref().map_or_else(|| glare.luminance_weights(), |scale| scale.weights);
-    let unit = if scale.is_some() { "cd/m²" } else { "units of the photo" };
-    let luminance =
-        |pixel: &[f32; 4]| weights.iter().zip(pixel).map(|(weight, &part)| weight * f64::from(part)).sum::<f64>();
+    let brightness = Brightness::of(glare);
+    let luminance = |&[red, green, blue, _]: &[f32; 4]| brightness.at([red, green, blue].map(f64::from));
     let mut values = Vec::with_capacity(glare.width() as usize * glare.height() as usize);
     (0..glare.height()).for_each(|row| values.extend(glare.picture_row(row).iter().map(luminance)));
     let field = Scalar { width: glare.width(), height: glare.height(), values };
     let name = input.file_name().unwrap_or(input.as_os_str()).to_string_lossy();
     let title = format!("Luminance of the glare in {name}");
-    let axis = Axis { label: unit.to_owned(), range, log: true };
+    let axis = Axis { label: brightness.unit.to_owned(), range, log: true };
     field.logarithmic_map(&title, axis, Map::Inferno, glare.frame.pixel_aspect).write(path, Kind::of(path)?, overwrite)
 }

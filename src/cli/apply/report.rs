@@ -9,12 +9,13 @@ use super::job::{Job, Luminance};
 use crate::certificate::Certificate;
 use crate::choices::{LengthUnit, LightBy, Mix, Normalize, Sources};
 use crate::cli::lights::FirefliesJson;
+use crate::cli::photo_told::PhotoTold;
 use crate::cli::plan::CostModelReport;
 use crate::cli::surroundings::StrayTold;
 use crate::gpu::{Info, PassTime};
 use crate::job::{Computed, Done, EachPixel, Veiled};
 use crate::look::{Gathered, Look, LookLens};
-use crate::photo::{BadKind, Facts};
+use crate::photo::BadKind;
 use crate::plan::Plan;
 use crate::scene::{Goal, Light, OpticsSection, Recover, Recovery};
 
@@ -54,15 +55,8 @@ pub struct Report<'a> {
 
 #[derive(Serialize)]
 struct PhotoReport {
-    file: String,
-    format: &'static str,
-    depth: &'static str,
-    /// What the picture is called in a file that holds several.
-    layer: Option<String>,
-    picture: [u32; 2],
-    window: [i64; 4],
-    /// Width of a pixel over its height.
-    pixel_aspect: f64,
+    #[serde(flatten)]
+    photo: PhotoTold,
     bad_pixels: BadReport,
 }
 
@@ -205,16 +199,9 @@ fn cost_report(computed: &Computed, goal: Goal) -> CostReport<'_> {
 }
 
 fn photo_report(job: &Job<'_, Done<'_>>) -> PhotoReport {
-    let (Facts { frame, format, depth, picture }, bad) = (&job.work.facts, &job.work.bad);
-    let window = frame.window;
+    let bad = &job.work.bad;
     PhotoReport {
-        file: job.paths.input.display().to_string(),
-        format,
-        depth,
-        layer: picture.clone(),
-        picture: [frame.width, frame.height],
-        window: [window.x.into(), window.y.into(), window.width.into(), window.height.into()],
-        pixel_aspect: frame.pixel_aspect,
+        photo: PhotoTold::new(&job.paths.input, &job.work.facts),
         bad_pixels: BadReport {
             nan: bad.nan,
             infinite: bad.infinite,

@@ -7,19 +7,15 @@ use serde::Serialize;
 
 use crate::Result;
 use crate::choices::Projection;
+use crate::cli::photo_told::PhotoTold;
 use crate::options::ReadArgs;
-use crate::photo::{self, Facts, LuminanceScale, Photo};
+use crate::photo::{self, LuminanceScale, Photo};
 use crate::terminal::{digits, stderr, stdout};
 
 #[derive(Serialize)]
 struct Report {
-    file: String,
-    format: &'static str,
-    depth: &'static str,
-    layer: Option<String>,
-    picture: [u32; 2],
-    window: [i64; 4],
-    pixel_aspect: f64,
+    #[serde(flatten)]
+    photo: PhotoTold,
     primaries: String,
     display_referred: bool,
     /// The shares of red, green and blue in luminance.
@@ -48,8 +44,7 @@ pub fn run(path: &Path, reading: ReadArgs, as_json: bool) -> Result<()> {
 }
 
 fn report(path: &Path, photo: Photo) -> Report {
-    let Facts { frame, format, depth, picture } = photo.facts();
-    let (window, mut notes) = (frame.window, photo.source.notes.clone());
+    let (facts, mut notes) = (photo.facts(), photo.source.notes.clone());
     let view = photo.view().unwrap_or_else(|doubt| {
         notes.push(doubt);
         None
@@ -60,34 +55,29 @@ fn report(path: &Path, photo: Photo) -> Report {
         (None, Some(primaries)) => primaries.title().unwrap_or("of its own").to_owned(),
     };
     Report {
-        file: path.display().to_string(),
-        format,
-        depth,
-        layer: picture,
-        picture: [frame.width, frame.height],
-        window: [window.x.into(), window.y.into(), window.width.into(), window.height.into()],
-        pixel_aspect: frame.pixel_aspect,
+        photo: PhotoTold::new(path, &facts),
         primaries,
         display_referred: photo.source.display_referred,
         luminance_weights: photo.luminance_weights(),
         luminance: photo.luminance_scale(),
-        fov: view.as_ref().map(|view| view.across(&frame, Projection::Rectilinear)),
+        fov: view.as_ref().map(|view| view.across(&facts.frame, Projection::Rectilinear)),
         fov_from: view.map(|view| view.from),
         notes,
     }
 }
 
 fn text(out: &mut dyn Write, report: &Report) -> io::Result<()> {
-    let Report { format, depth, picture: [width, height], window: [left, top, columns, rows], .. } = report;
-    writeln!(out, "{}", report.file)?;
+    let PhotoTold { file, format, depth, layer, picture: [width, height], window, pixel_aspect } = &report.photo;
+    let [left, top, columns, rows] = window;
+    writeln!(out, "{file}")?;
     writeln!(out, "  format             {format}, {depth}")?;
-    report.layer.iter().try_for_each(|layer| writeln!(out, "  layer              {layer}"))?;
+    layer.iter().try_for_each(|layer| writeln!(out, "  layer              {layer}"))?;
     writeln!(out, "  picture            {width} x {height}")?;
     if [*left, *top, *columns, *rows] != [0, 0, i64::from(*width), i64::from(*height)] {
         writeln!(out, "  stored             {columns} x {rows} from column {left}, row {top}")?;
     }
-    if report.pixel_aspect != 1.0 {
-        writeln!(out, "  pixels             {:.4} times as wide as high", report.pixel_aspect)?;
+    if *pixel_aspect != 1.0 {
+        writeln!(out, "  pixels             {pixel_aspect:.4} times as wide as high")?;
     }
     let numbers = if report.display_referred { "made for a display, in linear light" } else { "scene-linear" };
     writeln!(out, "  numbers            {numbers}")?;

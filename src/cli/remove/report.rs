@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::Args;
 use crate::cli::luminance::Extent;
+use crate::cli::photo_told::PhotoTold;
 use crate::job::{Clipped, Removal, Removed, Stages};
 use crate::photo::{Facts, LuminanceScale};
 
@@ -34,7 +35,7 @@ pub struct Luminance {
 #[derive(Serialize)]
 pub struct Json<'a> {
     vglare: &'static str,
-    input: PhotoJson<'a>,
+    input: PhotoTold,
     output: Option<String>,
     mask: Option<String>,
     /// Nothing where there was no veil.
@@ -47,16 +48,6 @@ pub struct Json<'a> {
 }
 
 #[derive(Serialize)]
-struct PhotoJson<'a> {
-    file: String,
-    format: &'static str,
-    depth: &'static str,
-    layer: Option<&'a str>,
-    picture: [u32; 2],
-    window: [i64; 4],
-}
-
-#[derive(Serialize)]
 struct StageJson {
     stage: &'static str,
     wall_ms: f64,
@@ -64,19 +55,11 @@ struct StageJson {
 
 impl<'a> Report<'a> {
     pub fn json(&self) -> Json<'a> {
-        let Self { args, facts: Facts { frame, format, depth, picture }, removed, stages, luminance } = *self;
-        let window = frame.window;
+        let Self { args, facts, removed, stages, luminance } = *self;
         let shown = |path: &Option<std::path::PathBuf>| path.as_ref().map(|path| path.display().to_string());
         Json {
             vglare: env!("CARGO_PKG_VERSION"),
-            input: PhotoJson {
-                file: args.input.display().to_string(),
-                format,
-                depth,
-                layer: picture.as_deref(),
-                picture: [frame.width, frame.height],
-                window: [window.x.into(), window.y.into(), window.width.into(), window.height.into()],
-            },
+            input: PhotoTold::new(&args.input, facts),
             output: shown(&args.output),
             mask: shown(&args.mask),
             removal: removed.removal.as_ref(),

@@ -11,7 +11,7 @@ mod summing;
 #[cfg(feature = "laboratory")]
 mod trials;
 
-use std::cell::RefCell;
+use std::cell::Cell;
 use std::rc::Rc;
 
 use rayon::prelude::*;
@@ -66,7 +66,7 @@ pub(super) struct Prepared {
 
 thread_local! {
     /// The veil that this thread planned last: photos of a sequence that are seen alike share its plan, which depends on nothing else.
-    static KEPT: RefCell<Option<Kept>> = const { RefCell::new(None) };
+    static KEPT: Cell<Option<Kept>> = const { Cell::new(None) };
 }
 
 /// How a veil is planned, and for what.
@@ -97,7 +97,13 @@ fn prepared(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame, stages: 
         let Kept { wanted, channels, asked, .. } = kept.as_ref().expect("it is planned");
         Ok(Prepared { wanted: wanted.clone(), view, seat, channels: channels.clone(), asked: *asked })
     };
-    stages.time("veil plan", || KEPT.with_borrow_mut(planned))
+    stages.time("veil plan", || {
+        // Taken out meanwhile: a thread that waits for its planning may plan another.
+        let mut kept = KEPT.take();
+        let prepared = planned(&mut kept);
+        KEPT.set(kept);
+        prepared
+    })
 }
 
 /// How a photo was seen, where that matters, and where the pixels of a frame lie for a veil.

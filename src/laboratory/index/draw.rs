@@ -3,9 +3,8 @@
 use std::path::Path;
 
 use super::told::{Told, luminance};
+use crate::Result;
 use crate::chart::{Chart, Kind, Series, Stroke};
-use crate::laboratory::page::write_png;
-use crate::{Result, target};
 
 /// Draws what was measured and writes that.
 ///
@@ -22,8 +21,5 @@ pub fn write(path: &Path, kind: Kind, told: &Told<'_>, force: bool) -> Result<()
         chart = chart.with(Series::new(label, points).stroke(Stroke::Joined));
     }
     let chart = chart.range_y(0.0, if highest > 0.0 { 1.1 * highest } else { 1.0 });
-    match kind {
-        Kind::Svg => target::write_text(path, &chart.svg()?.unwrap_or_default(), force),
-        Kind::Png => write_png(path, &chart.picture()?, force),
-    }
+    chart.write(path, kind, force)
 }

@@ -12,111 +12,22 @@
 //! Nobody can know S. [`Recover::Auto`] has it from how much of the picture is clipped, and from how dark it is around a region:
 //! lamps are small and stand out, skies and paper are large or bright all around. See [`Region::standing_out`] and [`of_share`].
 
+mod by;
 mod distance;
 mod mask;
 mod regions;
 
 use rayon::prelude::*;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::Serialize;
 
 use super::emission::Emission;
 use super::find::FindOptions;
 use super::lit::Lit;
 use crate::frame::Frame;
+pub use by::Recover;
 use distance::{Columns, Parabolas};
 use mask::Mask;
 use regions::{Region, Run, runs};
-
-/// What becomes of clipped highlights where they make glare.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum Recover {
-    /// Of a picture for displays, they shine as bright as lamps of their kind are; of any other as they are.
-    #[default]
-    Auto,
-    /// They shine as they are.
-    None,
-    /// They shine up to so many stops brighter, 0 to [`Recover::MOST`], in any photo.
-    Stops(f64),
-}
-
-impl Recover {
-    /// The most stops: a million times as bright.
-    pub const MOST: f64 = 20.0;
-    /// What it may be, in words.
-    pub const EXPECTED: &str = "\"auto\", \"none\" or a number of stops from 0 to 20";
-
-    /// So many stops, where they can be.
-    pub fn stops(stops: f64) -> Option<Self> {
-        (0.0..=Self::MOST).contains(&stops).then_some(Self::Stops(stops))
-    }
-}
-
-impl std::fmt::Display for Recover {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Auto => f.write_str("auto"),
-            Self::None => f.write_str("none"),
-            Self::Stops(stops) => stops.fmt(f),
-        }
-    }
-}
-
-impl std::str::FromStr for Recover {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text {
-            "auto" => Ok(Self::Auto),
-            "none" => Ok(Self::None),
-            _ => text.parse().ok().and_then(Self::stops).ok_or_else(|| format!("expected {}", Self::EXPECTED)),
-        }
-    }
-}
-
-/// A number, or a word.
-impl Serialize for Recover {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self {
-            Self::Stops(stops) => serializer.serialize_f64(*stops),
-            Self::Auto | Self::None => serializer.collect_str(self),
-        }
-    }
-}
-
-impl<'de> Deserialize<'de> for Recover {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Visitor;
-        impl serde::de::Visitor<'_> for Visitor {
-            type Value = Recover;
-
-            fn expecting(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-                f.write_str(Recover::EXPECTED)
-            }
-
-            fn visit_f64<E: serde::de::Error>(self, stops: f64) -> Result<Recover, E> {
-                let wrong = || E::custom(format_args!("expected {}, found {stops}", Recover::EXPECTED));
-                Recover::stops(stops).ok_or_else(wrong)
-            }
-
-            fn visit_i64<E: serde::de::Error>(self, stops: i64) -> Result<Recover, E> {
-                self.visit_f64(stops as f64)
-            }
-
-            fn visit_u64<E: serde::de::Error>(self, stops: u64) -> Result<Recover, E> {
-                self.visit_f64(stops as f64)
-            }
-
-            fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<Recover, E> {
-                match word {
-                    "auto" => Ok(Recover::Auto),
-                    "none" => Ok(Recover::None),
-                    _ => Err(E::invalid_value(serde::de::Unexpected::Str(word), &self)),
-                }
-            }
-        }
-        deserializer.deserialize_any(Visitor)
-    }
-}
 
 /// A photo's pixels as they shine.
 #[derive(Debug, Clone, Default)]
