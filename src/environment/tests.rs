@@ -83,11 +83,12 @@ fn nothing_is_lost_between_zones() {
 /// A sun that crosses from one zone into the next is one sun, wherever on the way it is.
 #[test]
 fn a_sun_between_zones_shines_once() {
+    // So fine that cells of several pixels are shared.
     let sun = |right: f64, up: f64| if right.hypot(up - 3.0) < 0.8 { [1e5; 3] } else { [1e-3; 3] };
-    let environment = Environment::new(panorama(256, sun), &FindOptions::default());
-    let plan = Arc::new(StrayPlan::new(&cie(), 1e-2, &sight(&camera(0.0, 0.0, 0.0), 60.0, [96, 54], 256, 80.0)));
+    let environment = Environment::new(panorama(512, sun), &FindOptions::default());
+    let plan = Arc::new(StrayPlan::new(&cie(), 1e-2, &sight(&camera(0.0, 0.0, 0.0), 60.0, [96, 54], 512, 80.0)));
     for step in 0..60 {
-        let sight = sight(&camera(-60.0 + 0.5 * f64::from(step), 0.0, 0.0), 60.0, [96, 54], 256, 80.0);
+        let sight = sight(&camera(-60.0 + 0.5 * f64::from(step), 0.0, 0.0), 60.0, [96, 54], 512, 80.0);
         let zones = environment.outside(sight, Some(plan.clone())).flux()[0];
         let whole = environment.outside(sight, None).flux()[0];
         assert!((zones / whole - 1.0).abs() < 1e-3, "{step}: {zones} {whole}");

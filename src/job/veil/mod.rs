@@ -97,13 +97,15 @@ fn prepared(look: &Look, wanted: &Wanted, photo: &Photo, frame: &Frame, stages: 
         let Kept { wanted, channels, asked, .. } = kept.as_ref().expect("it is planned");
         Ok(Prepared { wanted: wanted.clone(), view, seat, channels: channels.clone(), asked: *asked })
     };
-    stages.time("veil plan", || {
-        // Taken out meanwhile: a thread that waits for its planning may plan another.
-        let mut kept = KEPT.take();
-        let prepared = planned(&mut kept);
-        KEPT.set(kept);
-        prepared
-    })
+    stages.time("veil plan", || with_kept(planned))
+}
+
+/// Does something with what was planned last. That is taken out meanwhile: a thread that waits for its planning may plan another.
+fn with_kept<T>(work: impl FnOnce(&mut Option<Kept>) -> T) -> T {
+    let mut kept = KEPT.take();
+    let result = work(&mut kept);
+    KEPT.set(kept);
+    result
 }
 
 /// How a photo was seen, where that matters, and where the pixels of a frame lie for a veil.
@@ -326,5 +328,41 @@ impl Change {
         picture.par_iter_mut().zip(&self.0).for_each(|(pixel, change)| {
             pixel.iter_mut().zip(change).for_each(|(value, change)| *value += change);
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::psf::Parameters;
+    use crate::scene::VeilSection;
+
+    fn prepared_at(age: f64) -> Prepared {
+        let photo = Photo::new(12, 8, vec![[1.0; 4]; 96]);
+        let parameters = Parameters { age: Some(age), ..Parameters::new(Name::Cie) };
+        let section = VeilSection { parameters, fov: None, projection: None, border: None, tolerance: None };
+        let wanted = Wanted::new(&section, false).unwrap();
+        let look = Look { veil: Some(wanted.clone()), fov: Some(50.0), ..Look::default() };
+        prepared(&look, &wanted, &photo, &photo.frame, &mut Stages::default()).unwrap()
+    }
+
+    #[test]
+    fn the_plan_before_is_taken_where_nothing_else_is_asked_for() {
+        let [first, again, older, back] = [40.0, 40.0, 70.0, 40.0].map(prepared_at);
+        assert!(Rc::ptr_eq(&first.channels, &again.channels) && !Rc::ptr_eq(&first.channels, &back.channels));
+        assert!(older.wanted.psf().energies()[0] > first.wanted.psf().energies()[0]);
+        assert_eq!(back.wanted, first.wanted);
+    }
+
+    #[test]
+    fn another_veil_may_be_planned_while_one_is() {
+        let kept = with_kept(|kept| {
+            let inner = prepared_at(30.0);
+            *kept = None;
+            inner
+        });
+        // What was planned within is not taken for what was planned around it.
+        assert!(with_kept(|kept| kept.is_none()));
+        assert!(!Rc::ptr_eq(&kept.channels, &prepared_at(30.0).channels));
     }
 }

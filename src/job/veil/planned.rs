@@ -92,35 +92,3 @@ impl VeilPlanned {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use rayon::prelude::*;
-
-    use super::super::plan_veil;
-    use super::*;
-    use crate::photo::Photo;
-    use crate::psf::Name;
-    use crate::scene::VeilSection;
-
-    /// What waits for its own planning may plan another on the same thread; and each has its own plan, whatever was planned before.
-    #[test]
-    fn veils_are_planned_at_the_same_time() {
-        let photo = Photo::new(60, 40, vec![[1.0; 4]; 60 * 40]);
-        let planned = |age: f64| {
-            let parameters = Parameters { age: Some(age), ..Parameters::new(Name::Cie) };
-            let section = VeilSection { parameters, fov: None, projection: None, border: None, tolerance: None };
-            let look = Look {
-                veil: Some(Wanted::new(&section, false).unwrap()),
-                fov: Some(50.0),
-                strength: 0.5,
-                ..Look::default()
-            };
-            plan_veil(&look, &photo, &photo.frame).unwrap().unwrap().scattered[0]
-        };
-        let ages: Vec<f64> = (0..12).map(|k| 20.0 + 5.0 * f64::from(k)).collect();
-        let alone: Vec<f64> = ages.iter().map(|&age| planned(age)).collect();
-        let together: Vec<f64> = ages.par_iter().map(|&age| planned(age)).collect();
-        assert!(alone == together && alone.windows(2).all(|pair| pair[0] < pair[1]), "{alone:?} {together:?}");
-    }
-}
