@@ -1,6 +1,7 @@
 //! What is said of a search for lights.
 
 use crate::choices::LightBy;
+use crate::problem::{Images, Rims};
 use crate::scene::threshold::{FLOOR, Rule};
 use crate::scene::{FindOptions, Found};
 
@@ -83,6 +84,16 @@ pub fn fireflies(found: &Found, options: &FindOptions) -> Option<String> {
              first at {place}; --firefly-limit 0 takes them for lights"
         ),
     })
+}
+
+/// What the rims of a real lens do where every pixel is a source, if they do anything.
+pub fn rims(images: &Images) -> Option<String> {
+    let Rims { cut, images, misplaced } = *images.rims().filter(|rims| rims.cut > 0)?;
+    Some(format!(
+        "rims cut {cut} of them, as {images} images of the photo's parts: by estimate {:.1} % of the ghosts' light is not where \
+         they would leave it",
+        100.0 * misplaced
+    ))
 }
 
 /// Four significant digits.

@@ -2,21 +2,14 @@
 
 use std::sync::Arc;
 
+use super::patches::Patched;
 use super::{Look, LookLens, LookLights};
 use crate::choices::{Mix, Sources};
 use crate::frame::Frame;
 use crate::photo::Photo;
-use crate::problem::{Images, Patch, Problem};
-use crate::raster::{Cell, Raster};
-use crate::scene::patches::{self, Spot};
+use crate::problem::{Images, Problem};
+use crate::raster::Raster;
 use crate::scene::{self, Emission, FindOptions, Found, Ghost, Knee, Lens, Light, Recovered, Recovery};
-
-/// Cells along the longer side of a photo, of which its patches are made.
-const CELLS: u32 = 48;
-
-/// Patches of a photo, at most; and how close light lies in them where fewer do, in the unit of lengths.
-const MOST_PATCHES: usize = 4;
-const CLOSE: f64 = 0.15;
 
 /// What glares in one photo.
 pub struct Gathered {
@@ -124,33 +117,17 @@ impl Look {
     pub fn images(&self, raster: impl FnOnce() -> Arc<Raster>) -> Option<Arc<Images>> {
         let of = |raster: Arc<Raster>| {
             let look = self.fitted(&raster.frame());
-            let patches = look.patches(&raster);
-            Arc::new(Images::in_patches(raster, look.lens_ghosts(), patches, self.axis, self.size, self.tint))
+            let (axis, size, tint) = (self.axis, self.size, self.tint);
+            let images = match &look.lens {
+                LookLens::Optical(optical) => {
+                    let Patched { whole, patches, rims } = Patched::new(optical, &raster, axis);
+                    Images::in_patches(raster, &whole, &patches, axis, size, tint).behind(rims)
+                }
+                _ => Images::new(raster, look.lens_ghosts(), axis, size, tint),
+            };
+            Arc::new(images)
         };
         self.takes_photo().then(|| of(raster()))
-    }
-
-    /// The parts of a photo in which lights have ghosts of their own, where the lens's rims cut them by where the light is.
-    fn patches(&self, raster: &Raster) -> Vec<Patch> {
-        let LookLens::Optical(optical) = &self.lens else { return Vec::new() };
-        let window = raster.frame().window;
-        let side = window.width.max(window.height).div_ceil(CELLS).max(1);
-        let cells = raster.cells(side as usize);
-        let columns = cells.ncols();
-        let spots: Vec<Spot> = cells.iter().map(|&Cell { light, place }| Spot { place, light }).collect();
-        let patch = |group: Vec<usize>| {
-            let along = |cell: fn(usize, usize) -> usize| {
-                let cells = group.iter().map(|&index| cell(index, columns) as u32);
-                let (first, last) = cells.fold((u32::MAX, 0), |(first, last), cell| (first.min(cell), last.max(cell)));
-                (first * side, (last + 1) * side)
-            };
-            let ((left, right), (top, lower)) =
-                (along(|index, columns| index % columns), along(|index, columns| index / columns));
-            let window = window.part(left, top, right.min(window.width) - left, lower.min(window.height) - top);
-            let ghosts = optical.ghosts_at(patches::middle(&spots, &group) - self.axis);
-            Patch { raster: raster.part(window), ghosts }
-        };
-        patches::together(&spots, MOST_PATCHES, CLOSE).into_iter().map(patch).collect()
     }
 
     /// What glares in a photo of which `found` is known, on its frame.

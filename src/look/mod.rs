@@ -2,6 +2,7 @@
 
 mod file;
 mod gather;
+mod patches;
 mod shared;
 mod unit;
 mod veil;

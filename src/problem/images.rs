@@ -11,6 +11,7 @@ use std::sync::Arc;
 use glam::DVec2;
 use ndarray::{Array2, Axis, concatenate, s};
 use rayon::prelude::*;
+use serde::Serialize;
 
 use crate::raster::Raster;
 use crate::scene::{Ghost, LensGhost};
@@ -42,6 +43,19 @@ pub struct Images {
     rasters: Vec<Arc<Raster>>,
     axis: DVec2,
     all: Vec<Image>,
+    rims: Option<Rims>,
+}
+
+/// What the rims of a lens do to its ghosts, by where the light is.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Rims {
+    /// How many ghosts they cut.
+    pub cut: usize,
+    /// How many images of the photo's parts those are.
+    pub images: usize,
+    /// The part of all ghosts' light that is not where rims would leave it, since light of a patch shares the shapes of its ghosts: off by a
+    /// ghost's breadth at most. An estimate of the model's error, which no bound of the sum has in it.
+    pub misplaced: f64,
 }
 
 /// A part of a photo, and what a lens makes of a light in it.
@@ -49,7 +63,7 @@ pub struct Images {
 pub struct Patch {
     /// The light of its pixels.
     pub raster: Arc<Raster>,
-    /// Row by row those of the whole photo's table.
+    /// The ghosts that are of its light alone.
     pub ghosts: Vec<LensGhost>,
 }
 
@@ -105,15 +119,14 @@ impl Images {
     /// Of a lens whose axis meets the picture at `axis`; every ghost `scale` times as large, and `tint` its colour. A pixel is a
     /// light of its own size, as the rule for lights has it.
     pub fn new(raster: Arc<Raster>, lens: &[LensGhost], axis: DVec2, scale: f64, tint: [f64; 3]) -> Self {
-        Self::in_patches(raster, lens, Vec::new(), axis, scale, tint)
+        Self::in_patches(raster, lens, &[], axis, scale, tint)
     }
 
-    /// The same where ghosts depend on where the light is: the patches together are the photo, and those ghosts that look alike in all of
-    /// them are the whole photo's.
+    /// The same where ghosts depend on where the light is: `lens` are those of the whole photo, and each patch has its own beside them.
     pub fn in_patches(
         raster: Arc<Raster>,
         lens: &[LensGhost],
-        patches: Vec<Patch>,
+        patches: &[Patch],
         axis: DVec2,
         scale: f64,
         tint: [f64; 3],
@@ -125,12 +138,9 @@ impl Images {
             let radiance = [0, 1, 2].map(|colour| ghost.radiance[colour] * tint[colour]);
             Image { ghost: Ghost { center: axis, radiance, ..ghost }, along: lens.along, patch }
         };
-        let alike = |row: usize| patches.iter().all(|patch| patch.ghosts[row] == lens[row]);
-        let whole = lens.iter().enumerate().filter(|(row, _)| alike(*row)).map(|(_, ghost)| image(ghost, 0));
-        let apart = (1..).zip(&patches).flat_map(|(number, patch)| {
-            let rows = patch.ghosts.iter().enumerate().filter(|(row, _)| !alike(*row));
-            rows.map(move |(_, ghost)| image(ghost, number))
-        });
+        let whole = lens.iter().map(|ghost| image(ghost, 0));
+        let apart =
+            (1..).zip(patches).flat_map(|(number, patch)| patch.ghosts.iter().map(move |ghost| image(ghost, number)));
         let images = whole.chain(apart);
         let rasters: Vec<Arc<Raster>> =
             std::iter::once(raster.clone()).chain(patches.iter().map(|patch| patch.raster.clone())).collect();
@@ -139,7 +149,17 @@ impl Images {
             image.ghost.radiance.into_iter().zip(rasters[image.patch].flux()).any(lit)
         };
         let all = images.filter(shines).collect();
-        Self { rasters, axis, all }
+        Self { rasters, axis, all, rims: None }
+    }
+
+    /// The same, of which it is known what rims do.
+    pub fn behind(self, rims: Rims) -> Self {
+        Self { rims: Some(rims), ..self }
+    }
+
+    /// What the rims of the lens do, where it has any.
+    pub fn rims(&self) -> Option<&Rims> {
+        self.rims.as_ref()
     }
 
     /// The photo.
@@ -160,6 +180,11 @@ impl Images {
     /// How many ghosts there are: one of each pixel for each image.
     pub fn count(&self) -> usize {
         self.all.iter().map(|image| self.raster_of(image).pixels()).sum()
+    }
+
+    /// How many ghosts each pixel has.
+    pub fn of_each(&self) -> usize {
+        self.count().div_ceil(self.raster().pixels().max(1))
     }
 
     /// Where the lens's axis meets the picture.

@@ -12,7 +12,7 @@ use crate::reference;
 use crate::scene::Ghost;
 
 pub(crate) use images::NOTHING;
-pub use images::{Image, Images, Patch};
+pub use images::{Image, Images, Patch, Rims};
 
 /// Ghosts, and the picture on which their glare lies. It never changes: a [plan](crate::plan::Plan) owns the problem that
 /// it solves, so that neither a renderer nor a certificate can be given the ghosts of another.

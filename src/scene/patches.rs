@@ -12,7 +12,7 @@ pub(crate) struct Spot {
 }
 
 /// Where the light of some spots is on average; in the middle of them where they are dark.
-pub(crate) fn middle(spots: &[Spot], group: &[usize]) -> DVec2 {
+fn middle(spots: &[Spot], group: &[usize]) -> DVec2 {
     if let [only] = group {
         return spots[*only].place;
     }
@@ -26,19 +26,21 @@ pub(crate) fn middle(spots: &[Spot], group: &[usize]) -> DVec2 {
     of(&|spot| spot.light).or_else(|| of(&|_| 1.0)).unwrap_or_default()
 }
 
-/// Spots in groups, at most so many, as numbers, such that the light of a group lies close: no farther from its middle than `close`, as a
-/// root mean square over all light, or as close as so many groups allow. Again and again the group whose light is spread most, times how
-/// much it has, is cut in two where that leaves least: along a line of x or y, so that cells of a rectangle stay rectangles.
-pub(crate) fn together(spots: &[Spot], most: usize, close: f64) -> Vec<Vec<usize>> {
-    let light: f64 = spots.iter().map(|spot| spot.light).sum();
+/// Spots in groups, as numbers, at most as many as each of `counts`, which rise: a list of groups for each, in which those of the one before
+/// are cut further. Again and again the group whose light is spread most, times how much it has, is cut in two where that leaves least:
+/// along a line of x or y, so that cells of a rectangle stay rectangles.
+pub(crate) fn levels(spots: &[Spot], counts: &[usize]) -> Vec<Vec<Vec<usize>>> {
     let mut groups = vec![Group::new(spots, (0..spots.len()).collect())];
-    while groups.len() < most && groups.iter().map(|group| group.spread).sum::<f64>() > close * close * light {
-        let widest = groups.iter().enumerate().max_by(|one, other| one.1.spread.total_cmp(&other.1.spread));
-        let Some(number) = widest.filter(|(_, group)| group.spread > 0.0).map(|(number, _)| number) else { break };
-        let group = groups.swap_remove(number);
-        groups.extend(group.halves(spots));
-    }
-    groups.into_iter().map(|group| group.members).collect()
+    let mut level = |most: usize| {
+        while groups.len() < most {
+            let widest = groups.iter().enumerate().max_by(|one, other| one.1.spread.total_cmp(&other.1.spread));
+            let Some(number) = widest.filter(|(_, group)| group.spread > 0.0).map(|(number, _)| number) else { break };
+            let group = groups.swap_remove(number);
+            groups.extend(group.halves(spots));
+        }
+        groups.iter().map(|group| group.members.clone()).collect()
+    };
+    counts.iter().map(|&most| level(most)).collect()
 }
 
 struct Group {
@@ -99,10 +101,8 @@ mod tests {
                 Spot { place, light: 1.0 + k as f64 }
             })
             .collect();
-        assert_eq!(together(&spots[..3], 3, 0.0).len(), 3);
-        // As many as are allowed, or as it takes for them to be close.
-        let groups = together(&spots, 3, 0.0);
-        assert_eq!(groups, together(&spots, 30, 0.02));
+        let together = |most| levels(&spots, &[most]).remove(0);
+        let groups = together(3);
         assert_eq!(groups.len(), 3);
         for group in &groups {
             assert_eq!(group.len(), 10);
@@ -110,11 +110,19 @@ mod tests {
             assert!((middle(&spots, group) - clusters[group[0] % 3]).length() < 0.02);
         }
         // All of them once, however many groups.
-        for most in [1, 2, 5, 29] {
-            let mut all: Vec<usize> = together(&spots, most, 0.0).concat();
+        let counts = [1, 2, 5, 29];
+        let found = levels(&spots, &counts);
+        for (most, groups) in counts.into_iter().zip(&found) {
+            let mut all: Vec<usize> = groups.concat();
             all.sort_unstable();
             assert_eq!(all, (0..30).collect::<Vec<_>>());
-            assert!(together(&spots, most, 0.0).len() <= most);
+            assert_eq!(groups.len(), most);
+            assert_eq!(groups.len(), together(most).len());
+        }
+        // Each level cuts the groups of the one before.
+        for pair in found.windows(2) {
+            let within = |group: &Vec<usize>| pair[0].iter().any(|large| group.iter().all(|spot| large.contains(spot)));
+            assert!(pair[1].iter().all(within));
         }
     }
 
@@ -123,13 +131,13 @@ mod tests {
         // A lamp and much that is dim.
         let mut spots: Vec<Spot> = (0..100).map(|k| spot(f64::from(k) * 0.01, 0.0, 0.001)).collect();
         spots.push(spot(2.0, 0.0, 50.0));
-        let groups = together(&spots, 2, 0.0);
+        let groups = levels(&spots, &[2]).remove(0);
         assert!(groups.contains(&vec![100]), "{groups:?}");
         let dark: Vec<Spot> = (0..10).map(|k| spot(f64::from(k), 0.0, 0.0)).collect();
-        assert_eq!(together(&dark, 3, 0.0).len(), 1);
+        assert_eq!(levels(&dark, &[3])[0].len(), 1);
         assert_eq!(middle(&dark, &[0, 1, 2]), DVec2::new(1.0, 0.0));
         // At one place there is nothing to cut.
-        assert_eq!(together(&[spot(0.5, 0.5, 1.0); 9], 4, 0.0).len(), 1);
+        assert_eq!(levels(&[spot(0.5, 0.5, 1.0); 9], &[4])[0].len(), 1);
         assert_eq!(middle(&[], &[]), DVec2::ZERO);
     }
 }

@@ -17,6 +17,7 @@ use crate::job::{Computed, Done, EachPixel, Veiled};
 use crate::look::{Gathered, Look, LookLens};
 use crate::photo::BadKind;
 use crate::plan::Plan;
+use crate::problem::Rims;
 use crate::scene::{Goal, Light, OpticsSection, Recover, Recovery};
 
 /// As JSON, one object.
@@ -119,6 +120,8 @@ struct SceneReport<'a> {
     lights: Vec<LightReport>,
     sources: Sources,
     ghosts: usize,
+    /// What rims of a real lens do, where every pixel is a source.
+    rims: Option<&'a Rims>,
 }
 
 #[derive(Serialize)]
@@ -246,5 +249,6 @@ fn scene_report<'a>(scene: &'a Gathered, lens: &'a LookLens, axis: DVec2) -> Sce
             .collect(),
         sources: scene.sources(),
         ghosts: scene.count(),
+        rims: scene.images.as_ref().and_then(|images| images.rims()),
     }
 }

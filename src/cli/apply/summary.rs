@@ -120,8 +120,9 @@ fn about_scene(out: &mut dyn Write, scene: &Gathered, look: &Look) -> io::Result
     if let Some(images) = &scene.images {
         writeln!(out, "sources  {} pixels", images.raster().pixels())?;
         if let Some(lens) = &scene.lens {
-            writeln!(out, "lens     {}{}: {} ghosts of each pixel", lens.name, stop(look), images.all().len())?;
+            writeln!(out, "lens     {}{}: {} ghosts of each pixel", lens.name, stop(look), images.of_each())?;
         }
+        found::rims(images).iter().try_for_each(|rims| writeln!(out, "         {rims}"))?;
         return match scene.ghosts.len() {
             0 => Ok(()),
             others => writeln!(out, "ghosts   {others} more"),

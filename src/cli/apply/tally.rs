@@ -242,7 +242,7 @@ fn line(out: &mut dyn Write, job: &Job<'_, Done<'_>>) -> io::Result<()> {
         write!(out, "{} lights at {:.4} and above, ", scene.lights.len(), found.threshold)?;
     }
     match &scene.images {
-        Some(images) => write!(out, "{} ghosts of each pixel, ", images.all().len())?,
+        Some(images) => write!(out, "{} ghosts of each pixel, ", images.of_each())?,
         None => write!(out, "{} ghosts, ", scene.ghosts.len())?,
     }
     if let Some(Computed { planning, certificate, .. }) = &job.work.computed {

@@ -19,6 +19,7 @@ use crate::options::ReadArgs;
 use crate::options::SceneArgs;
 use crate::options::VeilArgs;
 use crate::plan::{CostModel, Plan};
+use crate::problem::Rims;
 use crate::scene::Recovery;
 use crate::terminal::stderr::warn;
 use crate::terminal::stdout;
@@ -127,6 +128,7 @@ impl Told<'_> {
             Some(lens) if let Some(images) = &self.scene.images => {
                 let (pixels, ghosts) = (images.raster().pixels(), self.scene.count());
                 writeln!(out, "scene    {pixels} pixels through {}: {ghosts} ghosts", lens.name)?;
+                found::rims(images).iter().try_for_each(|rims| writeln!(out, "         {rims}"))?;
             }
             Some(lens) => {
                 let (lights, ghosts) = (self.scene.lights.len(), self.scene.ghosts.len());
@@ -176,6 +178,7 @@ impl Told<'_> {
             lights: self.scene.lights.len(),
             sources: self.scene.sources(),
             ghosts: self.scene.count(),
+            rims: self.scene.images.as_ref().and_then(|images| images.rims()),
             recover: self.scene.recovery.as_ref(),
             plan: &self.planned.plan,
             veil: self.veil.as_ref(),
@@ -200,6 +203,7 @@ struct Json<'a> {
     lights: usize,
     sources: Sources,
     ghosts: usize,
+    rims: Option<&'a Rims>,
     recover: Option<&'a Recovery>,
     plan: &'a Plan,
     veil: Option<&'a VeilPlanned>,

@@ -204,9 +204,8 @@ impl Optical {
     /// The table for lights that lie at `place`, counted from the axis in the unit of the picture that it was fitted to: the same rows,
     /// each with what the rims of the lens leave of it. A row of which nothing is left has no share.
     pub fn ghosts_at(&self, place: DVec2) -> Vec<LensGhost> {
-        let (tangent, towards) = self.direction(place);
-        let at = |(row, path): (&LensGhost, &usize)| rows::cut(row, &self.made.ghosts.ghosts[*path], tangent, towards);
-        self.lens.ghosts.par_iter().zip(&*self.paths).map(at).collect()
+        let rows: Vec<Rimmed<'_>> = self.rimmed().collect();
+        rows.par_iter().map(|row| row.at(place)).collect()
     }
 
     /// The rows of the table, each as it depends on where light is.

@@ -29,6 +29,17 @@ impl Rimmed<'_> {
         self.ghost.vignetting(distance * self.tangent).clamp(0.0, 1.0)
     }
 
+    /// How far the middle of what rims leave is from the ghost's own centre, in its radii, towards the light's own image.
+    pub fn shift(&self, distance: f64) -> f64 {
+        let [_, radius, _] = self.ghost.radius_mm;
+        if radius > 0.0 { self.ghost.shift(distance * self.tangent) / radius } else { 0.0 }
+    }
+
+    /// The row for light at a place, counted from the axis: with what rims leave of its shape and of its light.
+    pub fn at(&self, place: DVec2) -> LensGhost {
+        rows::cut(self.row, self.ghost, place.length() * self.tangent, place.normalize_or_zero())
+    }
+
     /// The rims that bite into its iris, in its sizes, of light so far from the axis in the direction of x; none of another bell.
     pub fn cuts(&self, distance: f64) -> Vec<Cut> {
         let Bell::Iris(iris) = &self.row.bell else { return Vec::new() };
