@@ -207,7 +207,8 @@ fn place(output: &Path) -> Option<PathBuf> {
 fn write(place: &Path, entry: &Entry) -> Result<()> {
     target::make_folder(target::folder(place))?;
     let line = serde_json::to_string(entry).expect("an entry is plain numbers and text");
-    target::write_text(place, &(line + "\n"), true)
+    // After a loss of power it may be gone, and the frame is done again: no run has to wait for the disk.
+    target::remember_text(place, &(line + "\n"))
 }
 
 fn hash_of(path: &Path) -> io::Result<String> {

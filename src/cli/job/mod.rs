@@ -77,7 +77,7 @@ struct JobOptions {
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..))]
     cores: Option<u32>,
 
-    /// Memory for each task in MiB [default: 512, and 192 bytes for each pixel of the first frame; 4096 where none is there yet]
+    /// Memory for each task in MiB [default: 512, and 256 bytes for each pixel of the first frame; 4096 where none is there yet]
     #[arg(long, value_name = "MIB", value_parser = clap::value_parser!(u32).range(1..))]
     memory: Option<u32>,
 

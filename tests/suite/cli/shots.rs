@@ -244,3 +244,174 @@ fn jobs_that_could_not_run_are_refused() {
     let ran = place.vglare(&[&shot[..], &["--file", "j.yaml"]].concat()).succeeded();
     assert!(ran.stderr().contains("8 of 9 frames are not there yet"), "{}", ran.stderr());
 }
+
+/// The mean of what was added to each frame, in `light/g.####.pfm`, and its largest value.
+fn glare(place: &Workplace, frames: std::ops::RangeInclusive<i64>, options: &[&str]) -> Vec<[f64; 2]> {
+    let words = ["apply", "in/s.####.exr", "--glare", "light/g.####.pfm", "--force", "-q"];
+    place.vglare(&[&words[..], options].concat()).succeeded();
+    let of = |frame| {
+        let photo = vglare::photo::read(&place.path(&format!("light/g.{frame:04}.pfm"))).unwrap();
+        let values = || photo.pixels.iter().flat_map(|pixel| &pixel[..3]).map(|&value| f64::from(value));
+        [values().sum::<f64>() / (3 * photo.pixels.len()) as f64, values().fold(0.0, f64::max)]
+    };
+    frames.map(of).collect()
+}
+
+/// Noise of a photon count and of a sensor; 36 lamps from 1 to 100 times as bright as what is around them, so that wherever a threshold lies one
+/// is close to it.
+fn noisy(frame: i64) -> Photo {
+    let mut state = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(frame as u64 + 1);
+    let mut uniform = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 40) as f32 / (1 << 24) as f32
+    };
+    let mut pixels = Vec::new();
+    for row in 0..96 {
+        for column in 0..144 {
+            let (lamp, x, y) = (column / 24 + 6 * (row / 16), column % 24, row % 16);
+            let level = if (10..13).contains(&x) && (7..10).contains(&y) { 100_f32.powf(lamp as f32 / 35.0) } else { 0.2 };
+            // The sum of twelve has the variance 1.
+            let normal = (0..12).map(|_| uniform()).sum::<f32>() - 6.0;
+            let seen = (level + (0.002 * level).sqrt() * normal + 0.003 * normal).max(0.0);
+            pixels.push([seen, 0.9 * seen, 0.7 * seen, 1.0]);
+        }
+    }
+    Photo::new(144, 96, pixels)
+}
+
+#[test]
+fn the_glare_of_a_noisy_shot_stands_still() {
+    let place = place(&[]);
+    (1..=5).for_each(|frame| drop(place.write(&format!("in/s.{frame:04}.exr"), &noisy(frame))));
+    for sources in ["photo", "lights"] {
+        let means: Vec<f64> = glare(&place, 1..=5, &["--sources", sources]).iter().map(|[mean, _]| *mean).collect();
+        assert!(means[0] > 0.0);
+        for pair in means.windows(2) {
+            assert!((pair[1] / pair[0] - 1.0).abs() < 0.005, "{sources}: {means:?}");
+        }
+    }
+}
+
+/// In proportion to its own light: without a threshold nothing else depends on how bright it is.
+#[test]
+fn a_lamp_that_flickers_moves_its_own_glare_alone() {
+    let place = place(&[]);
+    for (frame, level) in [(1, 0.9), (2, 1.0), (3, 1.1)] {
+        let mut photo = night();
+        photo.pixels[50 * 96 + 20] = [60.0 * level, 90.0 * level, 200.0 * level, 1.0];
+        place.write(&format!("in/s.{frame:04}.exr"), &photo);
+    }
+    let means = glare(&place, 1..=3, &["--tolerance", "1e-4"]);
+    let [less, more] = [means[1][0] - means[0][0], means[2][0] - means[1][0]];
+    assert!(less > 0.0 && (more / less - 1.0).abs() < 0.02, "{means:?}");
+}
+
+#[test]
+fn what_each_frame_would_choose_one_chooses_for_all() {
+    let place = place(&[1]);
+    let mut bright = night();
+    bright.pixels[40 * 96 + 40] = [90_000.0, 90_000.0, 90_000.0, 1.0];
+    bright.pixels[40 * 96 + 41] = [90_000.0, 90_000.0, 90_000.0, 1.0];
+    place.write("in/s.0002.exr", &bright);
+    let thresholds = |options: &[&str]| {
+        let words = ["--sources", "lights", "--report", "report.json", "--force", "-q"];
+        place.vglare(&[&SHOT[..], &words, options].concat()).succeeded();
+        let report = place.read_json("report.json");
+        let frames = report["frames"].as_array().unwrap().iter();
+        frames.map(|frame| frame["scene"]["threshold"].as_f64().unwrap()).collect::<Vec<_>>()
+    };
+    let each = thresholds(&["--lock", "none"]);
+    assert!(each[1] > 2.0 * each[0], "{each:?}");
+    assert_eq!(thresholds(&[]), [each[0]; 2]);
+    assert_eq!(thresholds(&["--frames", "2"]), [each[0]], "whichever are done");
+    assert_eq!(thresholds(&["--lock", "2"]), [each[1]; 2]);
+    assert_eq!(thresholds(&["--threshold", "3"]), [3.0; 2]);
+    // What is stretched.
+    let stretched = |lock| {
+        let of = glare(&place, 1..=2, &["--sources", "lights", "--threshold", "10", "--normalize", "minmax", "--lock", lock]);
+        [of[0][1], of[1][1]]
+    };
+    let [one, other] = stretched("none");
+    assert!((one - 1.0).abs() < 0.01 && (other - 1.0).abs() < 0.01, "{one} {other}");
+    let [one, other] = stretched("first");
+    assert!((one - 1.0).abs() < 0.01 && other > 2.0, "{one} {other}");
+    place.vglare(&with(&["--sources", "lights", "--lock", "9", "--force"])).failed(2, &["--lock 9", "frame 9 of in/s.####.exr is missing"]);
+    place.vglare(&with(&["--lock", "last"])).failed(2, &["\"first\", \"none\" or a frame's number"]);
+}
+
+#[test]
+fn processes_share_a_shot() {
+    let place = place(&[1, 2, 3, 4, 5, 6]);
+    place.vglare(&["apply", "in/s.####.exr", "-o", "one/", "--strength", "2", "--report", "one.json"]).succeeded();
+    let said = place.vglare(&with(&["--jobs", "3", "--report", "report.json"])).succeeded().stdout();
+    assert!(said.contains("wrote    6 of 6 pictures"), "{said}");
+    let same = |name: &str| {
+        let [one, other] = ["out", "one"].map(|folder| std::fs::read(place.path(&format!("{folder}/{name}"))).unwrap());
+        one == other
+    };
+    assert!(names(&place).len() == 6 && names(&place).iter().all(|name| same(name)));
+    let [one, other] = ["one.json", "report.json"].map(|name| place.read_json(name));
+    assert_eq!(other["frames"].as_array().map(Vec::len), Some(6));
+    assert_eq!(other["summary"]["worst_error"], one["summary"]["worst_error"]);
+    let said = place.vglare(&with(&["--jobs", "3", "--resume"])).succeeded().stdout();
+    assert!(said.contains("resumed  6 photos"), "{said}");
+    place.vglare(&with(&["--jobs", "2"])).failed(1, &["out/s.0001.exr", "--force"]);
+    // A photo that cannot be done stops all, or none.
+    std::fs::write(place.path("in/s.0002.exr"), "torn").unwrap();
+    place.vglare(&with(&["--jobs", "2", "--force"])).failed(1, &["in/s.0002.exr"]);
+    let ran = place.vglare(&with(&["--jobs", "2", "--force", "--keep-going"]));
+    assert!(ran.stdout().contains("wrote    5 of 6"), "{}", ran.stdout());
+    ran.failed(1, &["in/s.0002.exr", "1 of 6 photos could not be done"]);
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_process_that_is_killed_is_told_and_none_outlives_who_started_it() {
+    use std::process::{Child, Command, Stdio};
+
+    let start = |place: &Workplace| {
+        let mut command = place.command(&with(&["--jobs", "2", "--keep-going", "-q"]));
+        command.stderr(Stdio::piped()).spawn().unwrap()
+    };
+    let workers = |parent: &Child| -> Vec<String> {
+        let path = format!("/proc/{0}/task/{0}/children", parent.id());
+        std::fs::read_to_string(path).unwrap_or_default().split_whitespace().map(str::to_owned).collect()
+    };
+    let kill = |signal: &str, id: &str| {
+        assert!(Command::new("kill").args([signal, id]).status().unwrap().success());
+    };
+    let begun = |place: &Workplace, parent: &mut Child| {
+        while names(place).iter().filter(|name| !name.starts_with('.')).count() < 2 {
+            assert!(parent.try_wait().unwrap().is_none(), "it takes long enough");
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+    };
+    let shot = place(&(1..=40).collect::<Vec<_>>());
+    let mut parent = start(&shot);
+    begun(&shot, &mut parent);
+    kill("-KILL", &workers(&parent)[0]);
+    let ran = super::Ran(parent.wait_with_output().unwrap());
+    let said = ran.stderr();
+    assert!(said.contains("its process ended before it was done (signal: 9"), "{said}");
+    // The other has done its own.
+    let done = names(&shot).into_iter().filter(|name| !name.starts_with('.')).count();
+    assert!((20..40).contains(&done), "{done}");
+    ran.failed(1, &["of 40 photos could not be done"]);
+
+    let shot = place(&(1..=40).collect::<Vec<_>>());
+    let mut parent = start(&shot);
+    begun(&shot, &mut parent);
+    let children = workers(&parent);
+    assert_eq!(children.len(), 2);
+    parent.kill().unwrap();
+    parent.wait().unwrap();
+    let until = std::time::Instant::now() + std::time::Duration::from_secs(20);
+    while children.iter().any(|id| std::fs::read_to_string(format!("/proc/{id}/stat")).is_ok_and(|stat| !stat.contains(") Z "))) {
+        assert!(std::time::Instant::now() < until, "they end, too");
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    for (name, _) in pictures(&shot) {
+        assert!(!name.starts_with('.'), "{name} is left");
+        vglare::photo::read(&shot.path(&format!("out/{name}"))).unwrap_or_else(|error| panic!("{error}"));
+    }
+}
