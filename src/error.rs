@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::shot::Frames;
+
 /// A result whose error is vglare's own.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
@@ -189,6 +191,15 @@ pub enum Error {
         error: Box<Error>,
     },
 
+    /// What one of several processes said of a photo that it could not do.
+    #[error("{reason}")]
+    Worker {
+        /// In its words.
+        reason: String,
+        /// What it would have exited with.
+        code: u8,
+    },
+
     /// Several photos were done, but not all; each error has been told.
     #[error("{failed} of {frames} photos could not be done")]
     Frames {
@@ -198,6 +209,13 @@ pub enum Error {
         frames: usize,
         /// The first error.
         first: Box<Error>,
+    },
+
+    /// Frames that were asked for are not there.
+    #[error("{}", lacking(missing))]
+    MissingFrames {
+        /// What names frames, or the folder that they are in, and their numbers.
+        missing: Vec<(PathBuf, Frames)>,
     },
 
     /// Of several photos, some have glare that is further from the truth than was asked.
@@ -299,6 +317,7 @@ impl Error {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Frame { error, .. } | Self::Frames { first: error, .. } => error.exit_code(),
+            Self::Worker { code, .. } => *code,
             Self::UnknownPreset { .. } | Self::UnknownLens { .. } | Self::Usage(_) => 2,
             Self::ToleranceBelowFloor { .. }
             | Self::BudgetTooSmall { .. }
@@ -317,7 +336,7 @@ impl Error {
     /// The error of one photo of several, with its name unless the text has it already.
     pub(crate) fn in_frame(self, path: &Path) -> Self {
         match self {
-            Self::ReadPhoto { .. } | Self::Write { .. } | Self::Exists { .. } => self,
+            Self::ReadPhoto { .. } | Self::Write { .. } | Self::Exists { .. } | Self::Worker { .. } => self,
             error => Self::Frame { path: path.to_owned(), error: Box::new(error) },
         }
     }
@@ -357,6 +376,15 @@ fn meant(name: &str, known: &[String]) -> String {
 /// Those that are not in a list of names.
 fn older(known: &[String]) -> &'static str {
     if known.iter().any(|name| name.starts_with("v1/")) { "" } else { ", and those of looks of version 1 as v1/NAME" }
+}
+
+/// Which frames of which patterns are missing.
+fn lacking(missing: &[(PathBuf, Frames)]) -> String {
+    let of = |(pattern, frames): &(PathBuf, Frames)| {
+        let (noun, verb) = if frames.len() == 1 { ("frame", "is") } else { ("frames", "are") };
+        format!("{noun} {frames} of {} {verb} missing", pattern.display())
+    };
+    missing.iter().map(of).collect::<Vec<_>>().join("; ")
 }
 
 /// So many pixels.

@@ -24,6 +24,7 @@
 //! | [`veil`] | photo, point-spread function → the veil of every pixel, with its bound |
 //! | [`compare`], [`certificate`] | the one error metric, and a rendered field held against the definition |
 //! | [`job`] | a look laid over a photo: find, plan, render, certify |
+//! | [`shot`] | frames by their numbers, and which of them are done |
 //! | [`motion`] | lights and cameras that move: where they are at a time, and what is seen then |
 //! | [`environment`] | light from outside the frame: what a lens scatters of all that its camera does not see |
 //! | [`measure`] | arms timed in turns, and their ratios |
@@ -86,6 +87,7 @@ pub mod reference;
 pub mod renderer;
 pub mod scene;
 pub mod series;
+pub mod shot;
 mod target;
 #[cfg(feature = "terminal")]
 pub mod terminal;

@@ -5,6 +5,7 @@ pub mod apply;
 mod encoding;
 mod found;
 pub mod info;
+pub mod job;
 pub mod lights;
 mod luminance;
 mod photo_told;

@@ -35,6 +35,11 @@ impl RangePass {
         self.total.clear(f32::INFINITY);
     }
 
+    /// Takes a range for that of all tiles.
+    pub fn set(&self, [least, largest]: [f32; 2]) {
+        self.total.fill([least, -largest, 0.0, 0.0]);
+    }
+
     /// Takes in a tile's field, whose values are multiplied by `scale` first.
     pub fn add(&mut self, runner: &Runner, field: &Texture, scale: [f32; 3]) -> Result<()> {
         let [width, height] = [field.level_width(0), field.level_height(0)].map(|side| (side / 2).max(1));

@@ -87,8 +87,8 @@ impl<'a> Found<'a> {
                     .into(),
             );
         }
-        if knee != 0.0 && !(look.takes_photo() && threshold.is_some()) {
-            warnings.push("a knee is of a threshold where every pixel is a source, and changes nothing here".into());
+        if knee != 0.0 && !look.finds() && !(look.takes_photo() && threshold.is_some()) {
+            warnings.push("a knee is of a threshold, of which there is none here, and changes nothing".into());
         }
         let veil = look.veil_on(&frame);
         if look.strength != 0.0 && look.veil.is_some() && veil.is_none() {
@@ -100,6 +100,14 @@ impl<'a> Found<'a> {
             warnings.extend(panorama::seam(&photo));
         }
         Ok(Self { look, facts: photo.facts(), photo, frame, bad, scene, stages, warnings, recovered, settings })
+    }
+
+    /// The same, where glare that is stretched is stretched between these values of the field instead of its own least and largest: so that
+    /// frames of a shot have one scale ([`Planned::range`]).
+    #[must_use]
+    pub fn stretched_by(mut self, range: Option<[f32; 2]>) -> Self {
+        self.settings.range = range;
+        self
     }
 
     /// Lays the glare over the photo. A look of strength 0 has none and needs no computer; without a computer there is

@@ -31,6 +31,16 @@ struct Drawn {
 }
 
 impl<'a> Planned<'a> {
+    /// The smallest and the largest value of the field, all colours alike, between which [`crate::choices::Normalize::Minmax`] stretches it.
+    ///
+    /// # Errors
+    /// Where the driver refuses.
+    pub fn range(&self, computer: &mut Computer) -> Result<[f32; 2]> {
+        let field = &mut computer.renderer()?.field;
+        field.set_scene(&self.planning.plan)?;
+        field.range(self.planning.plan.problem().frame())
+    }
+
     /// Computes the spectrum, composites onto the photo and measures the error. `computer` has to be the one that the
     /// plan was made for.
     ///

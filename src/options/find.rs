@@ -41,8 +41,9 @@ pub struct FindArgs {
     #[arg(long, value_name = "F", allow_hyphen_values = true, value_parser = factor)]
     firefly_limit: Option<f64>,
 
-    /// Where every pixel is a source and there is a threshold, which then is one of a pixel's brightest channel: pixels begin to shine so far below
-    /// it, and so far above it all that is above it shines [default: 0]
+    /// How soft a threshold is: pixels begin to shine so far below it, and so far above it all of them shines that is above it, so
+    /// that a lamp which flickers around it does not come and go at once. Where every pixel is a source the threshold is one of its brightest
+    /// channel; lights that are found shine in full from the threshold on where this is 0 [default: 0]
     #[arg(long, value_name = "K", allow_hyphen_values = true, value_parser = not_negative)]
     knee: Option<f64>,
 

@@ -7,7 +7,7 @@ mod shell;
 use clap::error::{ContextKind, ContextValue};
 use clap::{Parser, Subcommand};
 
-use vglare::cli::{animate, apply, info, lights, plan, presets, remove};
+use vglare::cli::{animate, apply, info, job, lights, plan, presets, remove};
 #[cfg(feature = "laboratory")]
 use vglare::laboratory::{bench, calibrate, harmonics, index, lens, psf, rex, tradeoff};
 #[cfg(feature = "window")]
@@ -41,6 +41,7 @@ enum Command {
     Apply(Box<apply::Args>),
     Remove(Box<remove::Args>),
     Animate(Box<animate::Args>),
+    Job(job::Args),
     #[cfg(feature = "window")]
     View(view::Args),
     Plan(Box<plan::Args>),
@@ -113,6 +114,7 @@ fn command(command: Command) -> Result<()> {
         Command::Apply(args) => apply::run(&args),
         Command::Remove(args) => remove::run(&args),
         Command::Animate(args) => animate::run(&args),
+        Command::Job(args) => job::run(&args),
         #[cfg(feature = "window")]
         Command::View(args) => view::run(&args),
         Command::Plan(args) => plan::run(&args),

@@ -286,6 +286,12 @@ impl Field {
         Ok(Source::HELD)
     }
 
+    /// Leaves a range on the device that is not the field's own.
+    pub(super) fn set_range(&mut self, range: [f32; 2]) {
+        self.range.set(range);
+        self.ranged = None;
+    }
+
     /// Finds the field's range over the frame's window, and leaves it on the device.
     pub(super) fn reduce(&mut self, frame: Frame) -> Result<()> {
         let scale = self.plan()?.units().map(|unit| unit as f32);

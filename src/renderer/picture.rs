@@ -162,8 +162,10 @@ impl Picture {
         let plan = self.field.plan()?;
         settings.check(plan.scale)?;
         let uniforms = convert::uniforms(plan, settings);
-        if settings.normalize == Normalize::Minmax {
-            self.field.reduce(frame)?;
+        match settings.range {
+            Some(range) if settings.normalize == Normalize::Minmax => self.field.set_range(range),
+            None if settings.normalize == Normalize::Minmax => self.field.reduce(frame)?,
+            _ => {}
         }
         self.field.range.bind();
         Ok(uniforms)

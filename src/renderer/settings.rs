@@ -14,6 +14,8 @@ pub struct Settings {
     pub strength: f64,
     /// How the field's values become glare.
     pub normalize: Normalize,
+    /// Between which values stretched ones are stretched, instead of the least and the largest of this field.
+    pub range: Option<[f32; 2]>,
     /// What is subtracted from the field's values first, RGB: 0, or the constant term of its series, to see the others.
     /// Stretched values stay as they are, because their range moves with them.
     pub constant: [f64; 3],
@@ -34,6 +36,7 @@ impl Default for Settings {
         Self {
             strength: 1.0,
             normalize: Normalize::None,
+            range: None,
             constant: [0.0; 3],
             light_gain: [1.0; 3],
             threshold: f64::INFINITY,
@@ -85,8 +88,17 @@ impl Settings {
     /// picture made smaller needs no picture then.
     pub fn is_affine(&self) -> bool {
         // All fields by name: one that is added has to say what it does to means.
-        let Self { strength: _, normalize, constant: _, light_gain, threshold: _, knee: _, emission: _, overlay: _ } =
-            *self;
+        let Self {
+            strength: _,
+            normalize,
+            range: _,
+            constant: _,
+            light_gain,
+            threshold: _,
+            knee: _,
+            emission: _,
+            overlay: _,
+        } = *self;
         normalize != Normalize::Clamp && light_gain == [1.0; 3]
     }
 }

@@ -42,8 +42,8 @@ pub struct FindOptions {
     /// A single pixel that is more than so many times as bright as the brightest of its neighbours is a firefly: no light,
     /// and nothing that the threshold goes by. At least 1; 0 takes every pixel as it is.
     pub firefly_limit: f64,
-    /// Where every pixel is a source, and there is a threshold: how far below and above it pixels begin to shine and shine in full;
-    /// see [`Knee`].
+    /// Of a threshold: how far below and above it pixels begin to shine and shine in full; see [`Knee`]. Where every pixel is a source
+    /// it counts with a threshold that is given; of lights, where it is above 0: 0 has pixels from the threshold on shine in full.
     pub knee: f64,
     /// How much brighter than it is shown what is clipped shines, as a light, as a pixel of the whole photo or in a veil.
     pub recover: Recover,
@@ -176,11 +176,18 @@ pub fn find_shining(
     };
     let peak = lit.peak();
     let lit = lit.shining(shining);
-    let found = regions(&lit, threshold as f32, frame.pixel_aspect);
     let fireflies = lit.fireflies(threshold as f32);
+    let knee = Knee { threshold, width: options.knee };
+    let soft = (options.knee > 0.0).then(|| knee.softened(shown, shining, emission));
+    // Of pixels that the knee has dimmed, all are light that are not black.
+    let (lit, least) = match &soft {
+        Some(soft) => (lit.shining(soft), f32::MIN_POSITIVE),
+        None => (lit, threshold as f32),
+    };
+    let found = regions(&lit, least, frame.pixel_aspect);
     let (mut found, long): (Vec<Moments>, Vec<Moments>) =
         found.into_iter().partition(|region| options.shape == LightShape::Ball || shape::is_round(region));
-    let parts = shape::parts(&lit, threshold as f32, frame.pixel_aspect, &long);
+    let parts = shape::parts(&lit, least, frame.pixel_aspect, &long);
     let regions = found.len() + parts.len();
     let total = found.iter().chain(&parts).map(|region| region.weight).sum::<f64>().max(f64::MIN_POSITIVE);
     found.sort_by(brightest_first);

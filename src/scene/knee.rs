@@ -2,6 +2,8 @@
 
 use rayon::prelude::*;
 
+use super::emission::Emission;
+
 /// A soft threshold, on the brightest channel of a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Knee {
@@ -26,6 +28,15 @@ impl Knee {
         let above = brightest - threshold;
         let soft = if width > 0.0 { (above + width).clamp(0.0, 2.0 * width).powi(2) / (4.0 * width) } else { 0.0 };
         (above.max(soft) / brightest).clamp(0.0, 1.0)
+    }
+
+    /// What of each pixel shines by how bright it is shown, where pixels shine otherwise than they are shown.
+    pub(super) fn softened(&self, shown: &[[f32; 4]], shining: &[[f32; 4]], emission: Emission) -> Vec<[f32; 4]> {
+        let of = |(shown, &[r, g, b, a]): (&[f32; 4], &[f32; 4])| {
+            let share = self.share(emission.brightness(shown).into()) as f32;
+            [share * r, share * g, share * b, a]
+        };
+        shown.par_iter().zip(shining).map(of).collect()
     }
 
     /// What of each pixel shines; a channel that is no finite number does not make its pixel brighter.

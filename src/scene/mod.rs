@@ -35,7 +35,7 @@ pub use knee::{Knee, brightest};
 pub use lens::{Lens, LensVeil, ghosts};
 pub(crate) use optical::Rimmed;
 pub use optical::{NamedLens, Optical, OpticsSection, SENSOR, named_lens};
-pub use recover::{END as DISPLAY_WHITE, Recover, Recovered, Recovery, clipped, recover};
+pub use recover::{END as DISPLAY_WHITE, Recover, Recovered, Recovery, clipped, recover, stops as recovery_stops};
 pub(crate) use referred::referred;
 pub use sections::{AccuracySection, FindSection, Goal, LookSection, Version};
 pub use veil::{NO_VEIL, VeilFunction, VeilSection, absolute, check_fov};

@@ -87,7 +87,7 @@ pub struct FindSection {
     /// whatever it likes.
     #[serde(default, deserialize_with = "number::<_, IsFactor>", skip_serializing_if = "Option::is_none")]
     pub firefly_limit: Option<f64>,
-    /// How far about the threshold pixels begin to shine where every pixel is a source, 0 or more.
+    /// How far about the threshold pixels begin to shine, 0 or more.
     #[serde(default, deserialize_with = "number::<_, IsNotNegative>", skip_serializing_if = "Option::is_none")]
     pub knee: Option<f64>,
     /// Whether the file's lights are added to those of the photo, instead of taking their place.

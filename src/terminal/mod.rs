@@ -1,7 +1,7 @@
 //! What every command does at a terminal: printing, telling, showing how far it is, ending by a signal.
 
 pub(crate) mod progress;
-mod signals;
+pub(crate) mod signals;
 pub(crate) mod stderr;
 pub(crate) mod stdout;
 

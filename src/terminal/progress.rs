@@ -3,7 +3,7 @@
 use std::thread;
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{FormattedDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::job::{Step, Watch};
 use crate::printable;
@@ -71,6 +71,18 @@ impl Progress {
     /// Takes the line away while `print` prints.
     pub fn aside<T>(&self, print: impl FnOnce() -> T) -> T {
         self.bar.suspend(print)
+    }
+
+    /// Says how many of `total` are `done`, `since` of which the time has passed; how many that is a second, and how long the others will
+    /// take at that.
+    pub fn counted(&self, noun: &str, [done, since, total]: [usize; 3], passed: Duration) {
+        let pace = since as f64 / passed.as_secs_f64();
+        let mut what = format!("{done} of {total} {noun}");
+        if since > 0 && done < total && pace.is_finite() {
+            let left = FormattedDuration(passed.mul_f64((total - done) as f64 / since as f64));
+            what += &format!(", {} a second, {left} left", super::digits(pace));
+        }
+        self.part(what, done as f64 / total.max(1) as f64);
     }
 
     /// Says what goes on now, and how much of all is done, from 0 to 1.

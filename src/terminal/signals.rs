@@ -1,4 +1,15 @@
-//! Signals that end the program: nothing half-written is left behind then.
+//! Signals that end the program: nothing half-written is left behind then, and it is told how to go on.
+
+use std::io::{IsTerminal as _, Write as _};
+use std::sync::{Mutex, PoisonError};
+
+/// What is told last where a signal ends the program.
+static LAST_WORDS: Mutex<Option<String>> = Mutex::new(None);
+
+/// From now on this is told where a signal ends the program, or nothing.
+pub fn set_last_words(words: Option<String>) {
+    *LAST_WORDS.lock().unwrap_or_else(PoisonError::into_inner) = words;
+}
 
 /// Has signals take the files along that are being written, from now on.
 ///
@@ -25,12 +36,54 @@ pub fn listen() {
     let watch = move || {
         if let Some(signal) = signals.forever().next() {
             let _held = crate::target::part::remove_all();
+            say_last_words();
             let _ = emulate_default_handler(signal);
             std::process::exit(128 + signal);
         }
     };
     if std::thread::Builder::new().name("signals".into()).spawn(watch).is_err() {
         handle.close();
+    }
+}
+
+/// From now on the program ends, as by a signal, when whoever holds the other end of its standard input does.
+///
+/// # Errors
+/// Where the system gives no thread.
+pub fn end_with_parent() -> std::io::Result<()> {
+    let watch = || {
+        let _ = std::io::copy(&mut std::io::stdin().lock(), &mut std::io::sink());
+        let _held = crate::target::part::remove_all();
+        end();
+    };
+    std::thread::Builder::new().name("parent".into()).spawn(watch).map(drop)
+}
+
+#[cfg(unix)]
+fn end() {
+    let _ = signal_hook::low_level::emulate_default_handler(signal_hook::consts::SIGTERM);
+}
+
+#[cfg(not(unix))]
+fn end() {
+    std::process::exit(1);
+}
+
+/// Says them, unless that takes longer than a moment, as where nobody reads what is told.
+#[cfg(unix)]
+fn say_last_words() {
+    let Some(words) = LAST_WORDS.try_lock().ok().and_then(|mut words| words.take()) else { return };
+    let (said, heard) = std::sync::mpsc::channel();
+    let say = move || {
+        // In place of the line that says how far it is.
+        if std::io::stderr().is_terminal() {
+            let _ = write!(std::io::stderr(), "\r\x1b[2K");
+        }
+        super::stderr::tell(words);
+        let _ = said.send(());
+    };
+    if std::thread::Builder::new().name("last words".into()).spawn(say).is_ok() {
+        let _ = heard.recv_timeout(std::time::Duration::from_millis(500));
     }
 }
 

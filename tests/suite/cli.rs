@@ -24,6 +24,7 @@ mod remove;
 mod rex;
 mod scarce;
 mod sequence;
+mod shots;
 mod tables;
 mod targets;
 mod terminal;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// Modules that know nothing of GL, windows and the command line.
-const PURE: [&str; 18] = [
+const PURE: [&str; 19] = [
     "choices",
     "compare",
     "environment",
@@ -20,6 +20,7 @@ const PURE: [&str; 18] = [
     "reference",
     "scene",
     "series",
+    "shot",
     "veil",
     "viewer/model",
 ];

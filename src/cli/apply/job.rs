@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::lock::Locked;
 use super::outputs::{Paths, glare_options, picture_options};
 use super::{Args, map};
 use crate::Result;
@@ -49,11 +50,12 @@ impl<'a> Job<'a, Found<'a>> {
     ///
     /// # Errors
     /// Those of [`photo::read`] and [`Job::found`].
-    pub fn read(args: &'a Args, paths: &'a Paths, look: &'a Look) -> Result<Self> {
+    pub fn read(args: &'a Args, paths: &'a Paths, locked: &'a Locked) -> Result<Self> {
         let mut stages = Stages::default();
         let photo = stages
             .time("read", || photo::read_with(&paths.input, &args.reading.of_white(args.veil.white_luminance())))?;
-        Self::found(args, paths, look, photo, stages)
+        let job = Self::found(args, paths, &locked.look, photo, stages)?;
+        Ok(Self { work: job.work.stretched_by(locked.range), ..job })
     }
 
     /// Finds what glares in a photo that has been read.
@@ -133,7 +135,7 @@ impl Job<'_, Done<'_>> {
         }
         stages.time("write", || {
             if let (Some(path), Some(glare)) = (&paths.map, glare.as_ref()) {
-                map::write(path, &paths.input, glare, args.output_options.map_range, args.force)?;
+                map::write(path, &paths.input, glare, args.output_options.map_range, args.overwrites())?;
             }
             if let (Some(path), Some(glare)) = (&paths.glare, glare.take()) {
                 photo::write(path, &glare, &glare_options(args, path))?;

@@ -1,7 +1,10 @@
 //! `vglare apply`: the main job, for one photo or for the photos of a shot.
 
+mod expected;
 mod fault;
+mod inputs;
 mod job;
+mod lock;
 pub(super) mod look;
 mod map;
 pub(super) mod names;
@@ -10,12 +13,16 @@ pub(super) mod pipeline;
 mod report;
 mod run;
 mod sequence;
+mod shot;
 mod spool;
 mod summary;
 mod tally;
+mod told;
+mod workers;
 
 use std::path::PathBuf;
 
+use crate::Result;
 use crate::certificate::Verify;
 use crate::cli::encoding::EncodingArgs;
 use crate::look::Look;
@@ -26,9 +33,9 @@ use crate::options::ReadArgs;
 use crate::options::SceneArgs;
 use crate::options::VeilArgs;
 use crate::options::numbers::range;
-use crate::{Result, limits};
 
 use look::LookArgs;
+use shot::ShotArgs;
 
 pub use run::run;
 
@@ -39,13 +46,15 @@ pub use run::run;
 ///
 /// Several photos, as the frames of a shot, are done in one run, in which the next is read and the last written while one
 /// is computed. OUTPUT then is a folder, which is made if need be, or a pattern. Each photo has lights, a plan and a
-/// measured error of its own. With --sources lights, what is found in each photo for itself can change from frame to frame more
-/// than the scene does, and flicker: --threshold, --lights or --scene says for all what glares. --normalize minmax stretches each
-/// photo by its own glare.
+/// measured error of its own. Where photos are the frames of a shot, by a pattern or by names that differ in their numbers alone,
+/// the first chooses for all what would flicker if each chose: see --lock.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
     /// The photo, or several: OpenEXR, Radiance HDR, PFM, TIFF, PNG or JPEG
+    ///
+    /// The frames of a shot may be named by a pattern, as shot.####.exr or shot.%04d.exr: all that are there, or those that
+    /// --frames picks.
     #[arg(value_name = "INPUT", required_unless_present = "environment")]
     inputs: Vec<PathBuf>,
 
@@ -73,7 +82,7 @@ pub struct Args {
     verbose: bool,
 
     #[command(flatten)]
-    sequence: SequenceArgs,
+    sequence: ShotArgs,
 
     #[command(flatten)]
     reading: ReadArgs,
@@ -118,7 +127,9 @@ Examples:
   vglare apply night.exr --glare glare.exr --depth half
   vglare apply shot.*.exr -o veiled/
   vglare apply shot.*.exr -o 'veiled.####.exr' --glare 'glare.####.exr' --report report.json
-  vglare apply shot.*.exr -o 'previews/{name}.png' --keep-going --quiet";
+  vglare apply shot.*.exr -o 'previews/{name}.png' --keep-going --quiet
+  vglare apply 'shot.####.exr' -o 'out/shot.####.exr' --frames 1001-1240x2
+  vglare apply 'shot.####.exr' -o 'out/shot.####.exr' --resume";
 
 impl Args {
     /// The photos; where there are none, what one is seen of.
@@ -127,6 +138,12 @@ impl Args {
             Some(environment) if self.inputs.is_empty() => std::slice::from_ref(environment),
             _ => &self.inputs,
         }
+    }
+
+    /// Whether files that are there may be replaced. One of several processes does not look: another may have been quicker, and who
+    /// started them has.
+    fn overwrites(&self) -> bool {
+        self.force || self.sequence.resume || self.sequence.part.is_some()
     }
 
     /// The look that the files and options give.
@@ -146,31 +163,6 @@ impl Args {
             self.scene.unit.check(&look)?;
         }
         Ok(Look { find, accuracy, ..look })
-    }
-}
-
-/// How several photos are gone through.
-#[derive(Debug, clap::Args)]
-#[command(next_help_heading = "Several photos")]
-struct SequenceArgs {
-    /// Where a photo cannot be done, go on with the others and fail at the end, instead of stopping there
-    #[arg(long)]
-    keep_going: bool,
-
-    /// Finish each photo before the next is read: with one photo in memory at a time instead of up to three
-    #[arg(long)]
-    one_by_one: bool,
-
-    /// Panic in a step of one photo, to test that the others are done; see src/cli/apply/fault.rs
-    #[arg(long, value_name = "STEP:PHOTO", hide = true)]
-    panic_in: Option<fault::Fault>,
-}
-
-impl SequenceArgs {
-    /// Whether the next photo is read and the last written while one is computed: not where memory is limited, since what
-    /// a driver can have then must not change under its hands.
-    fn side_by_side(&self) -> bool {
-        !self.one_by_one && !limits::memory_is_limited()
     }
 }
 

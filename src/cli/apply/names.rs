@@ -1,6 +1,8 @@
 //! Names of outputs: a folder, or a pattern with fields that each photo fills in.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf, is_separator};
+use std::{fs, io};
 
 use crate::{Error, Result};
 
@@ -116,6 +118,62 @@ impl Names {
             .collect();
         Ok(given.with_file_name(filled?))
     }
+}
+
+impl Names {
+    /// The frames that are there of a pattern for photos: their numbers, and their files.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a pattern with another field than one frame number; [`Error::ReadPhoto`] where its folder cannot be
+    /// read.
+    pub fn present(&self) -> Result<BTreeMap<i64, PathBuf>> {
+        let (before, after) = self.around_number()?;
+        let unreadable = |error: io::Error| Error::read_photo(self.place(), error);
+        let mut frames = BTreeMap::new();
+        for entry in fs::read_dir(self.place()).map_err(unreadable)? {
+            let name = entry.map_err(unreadable)?.file_name();
+            let Some(name) = name.to_str() else { continue };
+            let digits = name.strip_prefix(before).and_then(|rest| rest.strip_suffix(after));
+            let Some(number) = digits.and_then(|digits| digits.parse().ok()) else { continue };
+            // A number that is written otherwise, as with fewer digits, is another pattern's.
+            let path = self.of_frame("", number)?;
+            if path.file_name().is_some_and(|of_frame| of_frame == name) {
+                frames.insert(number, path);
+            }
+        }
+        Ok(frames)
+    }
+
+    /// What stands before and after the number of a pattern for photos.
+    fn around_number(&self) -> Result<(&str, &str)> {
+        let Self::Pattern { given, parts } = self else { return Ok(("", "")) };
+        match &parts[..] {
+            [Part::Number(_)] => Ok(("", "")),
+            [Part::Text(before), Part::Number(_)] => Ok((before, "")),
+            [Part::Number(_), Part::Text(after)] => Ok(("", after)),
+            [Part::Text(before), Part::Number(_), Part::Text(after)] => Ok((before, after)),
+            _ => Err(Error::Usage(format!(
+                "{} names no photos: a pattern for them has one frame number, as #### or %04d",
+                given.display()
+            ))),
+        }
+    }
+}
+
+/// The frame number in a photo's name, as [`Names::of`] fills it in.
+pub fn frame_number(photo: &Path) -> Option<i64> {
+    let (sign, number) = number(photo.file_stem()?.to_str()?)?;
+    format!("{sign}{number}").parse().ok()
+}
+
+/// A photo's folder, and what stands before and after its frame number.
+pub fn around_number(photo: &Path) -> Option<(&Path, &str, &str)> {
+    let name = photo.file_name()?.to_str()?;
+    let stem = photo.file_stem()?.to_str()?;
+    number(stem)?;
+    let until = stem.trim_end_matches(|c: char| !c.is_ascii_digit());
+    let before = until.trim_end_matches(|c: char| c.is_ascii_digit());
+    Some((photo.parent()?, before, &name[until.len()..]))
 }
 
 /// A number with at least so many digits, of which the sign is one.
@@ -252,6 +310,33 @@ mod tests {
         {
             assert_eq!(Names::new(Path::new(given)), None, "{given}");
         }
+    }
+
+    #[test]
+    fn the_frames_of_a_pattern_are_those_that_are_written_so() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in [
+            "s.0001.exr",
+            "s.12345.exr",
+            "s.-002.exr",
+            "s.002.exr",
+            "s.00003.exr",
+            "s.+004.exr",
+            "s..exr",
+            "t.0005.exr",
+        ] {
+            fs::write(folder.path().join(name), "").unwrap();
+        }
+        let present = |pattern: &str| Names::new(&folder.path().join(pattern)).expect("a pattern").present();
+        let numbers = |pattern: &str| present(pattern).unwrap().into_keys().collect::<Vec<_>>();
+        assert_eq!(numbers("s.####.exr"), [-2, 1, 12345]);
+        assert_eq!(numbers("s.%03d.exr"), [2, 12345]);
+        assert_eq!(numbers("s.%d.exr"), [12345]);
+        assert_eq!(present("s.%04d.exr").unwrap()[&-2], folder.path().join("s.-002.exr"));
+        for pattern in ["{name}.exr", "##.####.exr"] {
+            assert!(matches!(present(pattern), Err(Error::Usage(_))), "{pattern}");
+        }
+        assert!(matches!(present("none/####.exr"), Err(Error::ReadPhoto { .. })));
     }
 
     #[test]

@@ -3,10 +3,12 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use super::inputs::Inputs;
 use super::names::Names;
 use super::{Args, OutputArgs};
 use crate::chart::Kind;
 use crate::photo::{self, Photo, WriteOptions};
+use crate::shot::Frames;
 use crate::target::{self, Identity};
 use crate::{Error, Result};
 
@@ -26,8 +28,17 @@ pub struct Paths {
 /// Several photos, and where their pictures go.
 pub struct Sequence {
     pub frames: Vec<Paths>,
+    /// What was asked for and is not there, by pattern; it is left out where --keep-going says so.
+    pub missing: Vec<(PathBuf, Frames)>,
     /// The folder that the pictures go to, or else the glare alone or its maps; none where there is a report only.
     pub place: Option<PathBuf>,
+}
+
+impl Sequence {
+    /// How many photos were asked for, be they there or not.
+    pub fn asked(&self) -> usize {
+        self.frames.len() + self.missing.iter().map(|(_, frames)| frames.len()).sum::<usize>()
+    }
 }
 
 impl Paths {
@@ -65,7 +76,7 @@ impl Paths {
             let glare = photo.companion(vec![[0.0; 4]; photo.frame.window.pixels()]);
             photo::check_target(path, &glare, &glare_options(args, path))?;
         }
-        self.map.iter().chain(&args.output_options.report).try_for_each(|path| target::check(path, args.force))
+        self.map.iter().chain(&args.output_options.report).try_for_each(|path| target::check(path, args.overwrites()))
     }
 
     /// Makes the folders of the results.
@@ -79,12 +90,12 @@ impl Paths {
 
 /// How the picture is written.
 pub fn picture_options(args: &Args) -> WriteOptions {
-    args.output_options.encoding.picture(args.force)
+    args.output_options.encoding.picture(args.overwrites())
 }
 
 /// How the glare is written.
 pub fn glare_options(args: &Args, path: &Path) -> WriteOptions {
-    args.output_options.encoding.glare(path, args.output.is_some(), args.force)
+    args.output_options.encoding.glare(path, args.output.is_some(), args.overwrites())
 }
 
 /// What is to be done: photos with their outputs.
@@ -97,11 +108,25 @@ pub enum Work {
 /// The photos with their outputs.
 ///
 /// # Errors
-/// [`Error::Usage`] where the names do not give each photo a file of its own, or one that is read would be replaced;
-/// [`Error::Write`] for a name that cannot be written, [`Error::Exists`] where a file is there and must not be replaced:
+/// Those of [`Inputs::new`]; [`Error::MissingFrames`]; [`Error::Usage`] where the names do not give each photo a file of its own, or
+/// one that is read would be replaced; [`Error::Write`] for a name that cannot be written, [`Error::Exists`] where a file is there and must not be replaced:
 /// before anything is read.
 pub fn work(args: &Args) -> Result<Work> {
-    let several = args.photos().len() > 1;
+    let inputs = Inputs::new(args.photos(), args.sequence.frames.as_ref())?;
+    if !inputs.missing.is_empty() && (inputs.photos.is_empty() || !args.sequence.keep_going) {
+        return Err(Error::MissingFrames { missing: inputs.missing });
+    }
+    of(args, inputs, args.overwrites())
+}
+
+/// The outputs of these photos, be they there or not.
+///
+/// # Errors
+/// Those of [`work`], but for photos that are missing.
+pub fn of(args: &Args, inputs: Inputs, overwrites: bool) -> Result<Work> {
+    let Inputs { photos, missing } = inputs;
+    let is_shot = args.sequence.resume || Inputs::is_shot(args.photos(), args.sequence.frames.as_ref());
+    let several = photos.len() > 1;
     let names = |given: Option<&Path>, option: &str| {
         let named = |given: &Path| match Names::new(given) {
             Some(names) => Ok(names),
@@ -115,7 +140,7 @@ pub fn work(args: &Args) -> Result<Work> {
     let maps = names(args.output_options.map.as_deref(), "--map")?;
     let all = || pictures.iter().chain(&glare).chain(&maps);
     let is_file = |names: &Names| matches!(names, Names::File(_));
-    if !several && all().all(is_file) {
+    if !several && !is_shot && all().all(is_file) {
         let paths = Paths::single(args);
         paths.map.iter().try_for_each(|path| Kind::of(path).map(drop))?;
         apart(args, std::slice::from_ref(&paths))?;
@@ -125,21 +150,21 @@ pub fn work(args: &Args) -> Result<Work> {
         let of = |names: &Option<Names>| names.as_ref().map(|names| names.of(input)).transpose();
         Ok(Paths { input: input.clone(), output: of(&pictures)?, glare: of(&glare)?, map: of(&maps)? })
     };
-    let frames = args.photos().iter().map(frame).collect::<Result<Vec<_>>>()?;
+    let frames = photos.iter().map(frame).collect::<Result<Vec<_>>>()?;
     apart(args, &frames)?;
     all().try_for_each(|names| room(names.place()))?;
     for frame in &frames {
         frame.pictures().try_for_each(|path| photo::check_name(path))?;
         frame.map.iter().try_for_each(|path| Kind::of(path).map(drop))?;
-        if let Some(path) = frame.files().find(|path| path.is_file() && !args.force) {
+        if let Some(path) = frame.files().find(|path| path.is_file() && !overwrites) {
             return Err(Error::Exists { path: path.clone() });
         }
     }
     if let Some(path) = &args.output_options.report {
-        target::check(path, args.force)?;
+        target::check(path, overwrites)?;
     }
     let place = all().next().map(|names| names.place().to_owned());
-    Ok(Work::Sequence(Sequence { frames, place }))
+    Ok(Work::Sequence(Sequence { frames, missing, place }))
 }
 
 /// A name without fields that many outputs are to share, as the folder that it can only be.
@@ -199,6 +224,10 @@ fn apart(args: &Args, frames: &[Paths]) -> Result<()> {
             }
             Some(Some((_, option))) if option != PICTURE => {
                 return Err(Error::Usage(format!("{option} would replace {this}, the photo")));
+            }
+            Some(Some(_)) if args.sequence.resume => {
+                let reason = "nothing would tell a photo with its glare from one without";
+                return Err(Error::Usage(format!("--resume cannot replace {this}, the photo: {reason}")));
             }
             Some(None) => return Err(Error::Usage(format!("--report would replace {this}, a photo"))),
             _ => {}

@@ -2,21 +2,20 @@
 
 use std::io::{self, Write};
 use std::ops::ControlFlow;
-use std::path::PathBuf;
-use std::sync::Arc;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde::Serialize;
 
 use super::Args;
-use super::job::Job;
-use super::outputs::{Paths, Sequence};
-use super::report::Report;
+use super::outputs::Sequence;
+use super::sequence::Hears;
 use super::spool::Spool;
-use crate::gpu::Info;
-use crate::job::{Computed, Done};
+use super::told::Told;
+use crate::shot::ledger::Entry;
+use crate::shot::{self, Measured};
 use crate::terminal::progress::Progress;
-use crate::terminal::{stderr, stdout};
+use crate::terminal::{signals, stderr, stdout};
 use crate::{Error, Result, panics, target};
 
 /// What has become of the photos so far.
@@ -27,6 +26,8 @@ pub struct Tally<'a> {
     started: Instant,
     done: usize,
     written: usize,
+    /// Photos that an earlier run has done.
+    skipped: usize,
     failed: Vec<Failed>,
     first_error: Option<Error>,
     /// Photos with pixels that are no light.
@@ -34,9 +35,36 @@ pub struct Tally<'a> {
     measured: usize,
     missed: usize,
     worst: Option<Worst>,
-    info: Option<Arc<Info>>,
+    renderer: Option<String>,
     /// A report a photo, once there is one and where it is asked for.
     reports: Option<Spool>,
+}
+
+impl Hears for Tally<'_> {
+    fn skipped(&mut self, photo: &Path, entry: &Entry) {
+        self.done += 1;
+        self.skipped += 1;
+        self.measure(photo, [entry.glare, entry.veil], entry.missed());
+        self.show();
+    }
+
+    fn done(&mut self, photo: &Path, done: Result<Told>) -> ControlFlow<()> {
+        let result = done.and_then(|told| panics::caught(|| self.written(photo, &told)));
+        if let Err(error) = result {
+            let error = error.in_frame(photo);
+            self.failed.push(Failed { input: photo.display().to_string(), error: error.to_string() });
+            if self.args.sequence.keep_going {
+                self.progress.aside(|| stderr::tell(&error));
+            }
+            self.first_error.get_or_insert(error);
+            if !self.args.sequence.keep_going {
+                return ControlFlow::Break(());
+            }
+        }
+        self.done += 1;
+        self.show();
+        ControlFlow::Continue(())
+    }
 }
 
 /// The photo with the largest error.
@@ -76,89 +104,109 @@ enum Frames<'a> {
 struct Summary {
     photos: usize,
     written: usize,
+    /// Of an earlier run, which are not among the frames here.
+    skipped: usize,
     failed: usize,
     /// With an error above the tolerance.
     above_tolerance: usize,
     worst_error: Option<f64>,
     worst_photo: Option<String>,
     seconds: f64,
+    /// Of those that were written.
+    photos_per_second: Option<f64>,
     side_by_side: bool,
 }
 
 impl<'a> Tally<'a> {
     pub fn new(args: &'a Args, sequence: &'a Sequence, progress: &'a Progress) -> Self {
-        Self {
+        let tally = Self {
             args,
             sequence,
             progress,
             started: Instant::now(),
             done: 0,
             written: 0,
+            skipped: 0,
             failed: Vec::new(),
             first_error: None,
             bad: 0,
             measured: 0,
             missed: 0,
             worst: None,
-            info: None,
+            renderer: None,
             reports: None,
-        }
+        };
+        tally.show();
+        tally
     }
 
-    /// Counts a photo that was written, or why it was not; says whether to go on.
-    pub fn add(&mut self, paths: &Paths, done: Result<Job<'_, Done<'_>>>) -> ControlFlow<()> {
-        let result = done.and_then(|job| panics::caught(|| self.written(&job)));
-        let total = self.sequence.frames.len();
-        if let Err(error) = result {
-            let error = error.in_frame(&paths.input);
-            self.failed.push(Failed { input: paths.input.display().to_string(), error: error.to_string() });
-            if self.args.sequence.keep_going {
-                self.progress.aside(|| stderr::tell(&error));
-            }
-            self.first_error.get_or_insert(error);
-            if !self.args.sequence.keep_going {
-                return ControlFlow::Break(());
-            }
+    /// Tells of photos that were asked for and are not there.
+    pub fn lack(&mut self, missing: &[(PathBuf, shot::Frames)]) {
+        if missing.is_empty() {
+            return;
         }
-        self.done += 1;
-        self.progress.part(format!("{} of {total} photos", self.done), self.done as f64 / total as f64);
-        ControlFlow::Continue(())
+        let error = Error::MissingFrames { missing: missing.to_owned() };
+        self.progress.aside(|| stderr::tell(&error));
+        self.first_error = Some(error);
+        for (pattern, frames) in missing {
+            self.failed.extend(frames.iter().map(|frame| {
+                let missing = vec![(pattern.clone(), [frame].into_iter().collect())];
+                Failed { input: pattern.display().to_string(), error: Error::MissingFrames { missing }.to_string() }
+            }));
+        }
+        self.done += self.failed.len();
+        self.show();
     }
 
-    fn written(&mut self, job: &Job<'_, Done<'_>>) -> Result<()> {
+    /// Shows how far it is, here and to whoever ends the program by a signal.
+    fn show(&self) {
+        let total = self.sequence.asked();
+        self.progress.counted("photos", [self.done, self.written, total], self.started.elapsed());
+        let with = if self.args.sequence.resume { "" } else { " with --resume" };
+        let there = self.written + self.skipped;
+        signals::set_last_words(Some(format!(
+            "{there} of {total} photos are done; the same command{with} does the others"
+        )));
+    }
+
+    fn written(&mut self, photo: &Path, told: &Told) -> Result<()> {
         self.written += 1;
-        self.bad += usize::from(job.work.bad.first.is_some());
-        let Done { computed, veiled, .. } = &job.work;
-        let glare = computed.as_ref().map(|computed| (computed.certificate.measured, computed.certificate.asked));
-        let veil = veiled.as_ref().map(|veiled| (veiled.error.measured, veiled.error.asked));
-        if let Some(Computed { info, .. }) = computed {
-            self.info.get_or_insert_with(|| info.clone());
+        self.bad += usize::from(told.bad);
+        if self.renderer.is_none() {
+            self.renderer = told.renderer.clone();
         }
-        self.measured += usize::from(glare.or(veil).is_some());
-        self.missed += usize::from(job.work.check().is_err());
-        let of = |error: Option<(f64, f64)>, veil| error.map(|(measured, asked)| (measured, asked, veil));
-        for (measured, asked, veil) in of(glare, false).into_iter().chain(of(veil, true)) {
-            // Not a number is worse than any, in this order.
-            let worse = |worst: &Worst| measured.abs().total_cmp(&worst.measured.abs()).is_gt();
-            if self.worst.as_ref().is_none_or(worse) {
-                self.worst = Some(Worst { photo: job.paths.input.clone(), measured, asked, veil });
-            }
-        }
-        if let Some(path) = &self.args.output_options.report {
+        self.measure(photo, told.errors, told.missed);
+        if let (Some(path), Some(report)) = (&self.args.output_options.report, &told.report) {
             let add = |reports: &mut Option<Spool>| {
                 let reports = match reports {
                     Some(reports) => reports,
                     none => none.insert(Spool::new(target::folder(path))?),
                 };
-                reports.add(&Report::new(job))
+                reports.add(report)
             };
             add(&mut self.reports).map_err(|error| Error::write(path, error))?;
         }
         self.progress.aside(|| {
-            let input = job.paths.input.display();
-            stderr::warn(job.work.warnings.iter().map(|warning| format!("{input}: {warning}")));
-            if self.args.verbose { stdout::print(|out| line(out, job)) } else { Ok(()) }
+            stderr::warn(told.warnings.iter().map(|warning| format!("{}: {warning}", photo.display())));
+            match &told.line {
+                Some(line) => stdout::print(|out| out.write_all(line.as_bytes())),
+                None => Ok(()),
+            }
         })
+    }
+
+    /// Takes in how far the ghosts of a photo and its veil are from the truth, and whether that is further than was asked.
+    fn measure(&mut self, photo: &Path, errors: [Option<Measured>; 2], missed: bool) {
+        self.measured += usize::from(errors.iter().any(Option::is_some));
+        self.missed += usize::from(missed);
+        for (error, veil) in errors.into_iter().zip([false, true]) {
+            let Some(Measured { measured, asked, .. }) = error else { continue };
+            // Not a number is worse than any, in this order.
+            let worse = |worst: &Worst| measured.abs().total_cmp(&worst.measured.abs()).is_gt();
+            if self.worst.as_ref().is_none_or(worse) {
+                self.worst = Some(Worst { photo: photo.to_owned(), measured, asked, veil });
+            }
+        }
     }
 
     /// Writes the report, prints the sum and gives the sequence's own error, if there is one.
@@ -168,13 +216,14 @@ impl<'a> Tally<'a> {
     /// --strict; those of writing the report.
     pub fn finish(mut self) -> Result<()> {
         let seconds = self.started.elapsed().as_secs_f64();
+        signals::set_last_words(None);
         if let Some(path) = &self.args.output_options.report {
-            target::write_json(path, &self.report(seconds), self.args.force)?;
+            target::write_json(path, &self.report(seconds), self.args.overwrites())?;
         }
         if !self.args.quiet {
             self.progress.aside(|| stdout::print(|out| self.print(out, seconds)))?;
         }
-        let frames = self.sequence.frames.len();
+        let frames = self.sequence.asked();
         match (self.first_error.take(), &self.worst) {
             (Some(first), _) if self.args.sequence.keep_going => {
                 Err(Error::Frames { failed: self.failed.len(), frames, first: Box::new(first) })
@@ -198,13 +247,15 @@ impl<'a> Tally<'a> {
             frames: self.reports.as_ref().map_or(Frames::None([]), Frames::Some),
             failed: &self.failed,
             summary: Summary {
-                photos: self.sequence.frames.len(),
+                photos: self.sequence.asked(),
                 written: self.written,
+                skipped: self.skipped,
                 failed: self.failed.len(),
                 above_tolerance: self.missed,
                 worst_error: self.worst.as_ref().map(|worst| worst.measured),
                 worst_photo: self.worst.as_ref().map(|worst| worst.photo.display().to_string()),
                 seconds,
+                photos_per_second: (self.written > 0).then(|| self.written as f64 / seconds),
                 side_by_side: self.args.sequence.side_by_side(),
             },
         }
@@ -219,10 +270,14 @@ impl<'a> Tally<'a> {
             let photo = worst.photo.display();
             writeln!(out, "error    {measured:.1e} at worst, in {photo}; {missed} of {all} above what was asked")?;
         }
-        if let Some(info) = &self.info {
-            writeln!(out, "renderer {}, {}", info.renderer, info.route)?;
+        if let Some(renderer) = &self.renderer {
+            writeln!(out, "renderer {renderer}")?;
         }
-        let (written, all) = (self.written, self.sequence.frames.len());
+        if self.skipped > 0 {
+            let skipped = self.skipped;
+            writeln!(out, "resumed  {skipped} photos were done already")?;
+        }
+        let (written, all) = (self.written, self.sequence.asked() - self.skipped);
         match &self.sequence.place {
             Some(place) => {
                 write!(out, "wrote    {written} of {all} pictures into {} in {seconds:.2} s", place.display())?
@@ -231,25 +286,4 @@ impl<'a> Tally<'a> {
         }
         if written > 1 { writeln!(out, ", {:.2} s each", seconds / written as f64) } else { writeln!(out) }
     }
-}
-
-/// A photo that was written, in a line.
-fn line(out: &mut dyn Write, job: &Job<'_, Done<'_>>) -> io::Result<()> {
-    let (frame, scene) = (job.work.facts.frame, &job.work.scene);
-    let path = job.paths.files().next().unwrap_or(&job.paths.input);
-    write!(out, "photo    {}: {} x {}, ", path.display(), frame.width, frame.height)?;
-    if let Some(found) = &scene.found {
-        write!(out, "{} lights at {:.4} and above, ", scene.lights.len(), found.threshold)?;
-    }
-    match &scene.images {
-        Some(images) => write!(out, "{} ghosts of each pixel, ", images.of_each())?,
-        None => write!(out, "{} ghosts, ", scene.ghosts.len())?,
-    }
-    if let Some(Computed { planning, certificate, .. }) = &job.work.computed {
-        write!(out, "{}, error {:.1e}, ", planning.plan.evaluator(), certificate.measured)?;
-    }
-    let total: f64 = job.work.stages.0.iter().map(|(_, ms)| ms).sum();
-    writeln!(out, "{:.2} s", total * 1e-3)?;
-    let notes = job.work.computed.iter().flat_map(|computed| &computed.planning.notes);
-    notes.into_iter().try_for_each(|note| writeln!(out, "note     {note}"))
 }

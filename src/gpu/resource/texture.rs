@@ -155,9 +155,14 @@ impl Texture {
 
     /// Sets every channel of level 0 to one value.
     pub fn clear(&self, value: f32) {
+        self.fill([value; 4]);
+    }
+
+    /// Sets all texels of the first level to one.
+    pub fn fill(&self, texel: [f32; 4]) {
         self.target(0);
         // SAFETY: the device keeps its context current on this thread, and a colour has four numbers.
-        unsafe { self.device.gl().clear_buffer_f32_slice(glow::COLOR, 0, &[value; 4]) }
+        unsafe { self.device.gl().clear_buffer_f32_slice(glow::COLOR, 0, &texel) }
     }
 
     /// Makes a level the target of drawing, all of it. Sets all state that drawing depends on.

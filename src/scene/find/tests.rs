@@ -323,3 +323,28 @@ fn lights_of_wide_pixels_lie_farther_apart_and_are_larger() {
     let merged = |merge| find(&two(4, 1), &frame, REC709, &FindOptions { merge, ..given(0.5) }).lights.len();
     assert_eq!((merged(1.99), merged(2.01)), (2, 1));
 }
+
+#[test]
+fn a_lamp_that_flickers_around_a_soft_threshold_comes_and_goes_by_its_own_light() {
+    let flux = |level: f32, knee: f64| {
+        let mut pixels = vec![[0.1, 0.1, 0.1, 1.0]; 64];
+        pixels[27] = [level, level, level, 1.0];
+        pixels[60] = [100.0, 100.0, 100.0, 1.0];
+        let options =
+            FindOptions { threshold: Some(10.0), knee, firefly_limit: 0.0, merge: 0.0, ..FindOptions::default() };
+        let frame = Frame::full(8, 8);
+        let found = find(&pixels, &frame, [0.2126, 0.7152, 0.0722], &options);
+        let area = frame.pixel_size().powi(2);
+        found.lights.iter().map(|light| light.flux[0]).sum::<f64>() / area
+    };
+    // All of it at once, or no more than it grows by itself.
+    assert!(flux(10.1, 0.0) - flux(9.9, 0.0) > 10.0);
+    let mut last = flux(5.0, 2.0);
+    assert!((last - 90.0).abs() < 1e-4, "the other lamp alone: {last}");
+    for step in 1..=150 {
+        let next = flux(5.0 + 0.1 * step as f32, 2.0);
+        assert!((-1e-4..0.1001).contains(&(next - last)), "{last} {next}");
+        last = next;
+    }
+    assert!((last - 100.0).abs() < 1e-3, "all that is above the threshold: {last}");
+}

@@ -12,17 +12,37 @@ pub enum Recover {
     None,
     /// They shine up to so many stops brighter, 0 to [`Recover::MOST`], in any photo.
     Stops(f64),
+    /// As [`Recover::Auto`], but for the stops before a region's surroundings have their say: these, 0 to [`Recover::MOST`], whatever
+    /// share of the picture is clipped.
+    AutoFrom(f64),
 }
 
 impl Recover {
     /// The most stops: a million times as bright.
     pub const MOST: f64 = 20.0;
     /// What it may be, in words.
-    pub const EXPECTED: &str = "\"auto\", \"none\" or a number of stops from 0 to 20";
+    pub const EXPECTED: &str = "\"auto\", \"auto:STOPS\", \"none\" or a number of stops from 0 to 20";
 
     /// So many stops, where they can be.
     pub fn stops(stops: f64) -> Option<Self> {
         (0.0..=Self::MOST).contains(&stops).then_some(Self::Stops(stops))
+    }
+
+    /// Whether the photo's kind decides, and what is around what is clipped.
+    pub fn is_auto(self) -> bool {
+        matches!(self, Self::Auto | Self::AutoFrom(_))
+    }
+
+    /// A word, or `auto:` and a number.
+    fn named(text: &str) -> Option<Self> {
+        match text {
+            "auto" => Some(Self::Auto),
+            "none" => Some(Self::None),
+            _ => match Self::stops(text.strip_prefix("auto:")?.parse().ok()?)? {
+                Self::Stops(stops) => Some(Self::AutoFrom(stops)),
+                _ => None,
+            },
+        }
     }
 }
 
@@ -32,6 +52,7 @@ impl std::fmt::Display for Recover {
             Self::Auto => f.write_str("auto"),
             Self::None => f.write_str("none"),
             Self::Stops(stops) => stops.fmt(f),
+            Self::AutoFrom(stops) => write!(f, "auto:{stops}"),
         }
     }
 }
@@ -40,11 +61,8 @@ impl std::str::FromStr for Recover {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        match text {
-            "auto" => Ok(Self::Auto),
-            "none" => Ok(Self::None),
-            _ => text.parse().ok().and_then(Self::stops).ok_or_else(|| format!("expected {}", Self::EXPECTED)),
-        }
+        let number = || text.parse().ok().and_then(Self::stops);
+        Self::named(text).or_else(number).ok_or_else(|| format!("expected {}", Self::EXPECTED))
     }
 }
 
@@ -53,7 +71,7 @@ impl Serialize for Recover {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             Self::Stops(stops) => serializer.serialize_f64(*stops),
-            Self::Auto | Self::None => serializer.collect_str(self),
+            Self::Auto | Self::AutoFrom(_) | Self::None => serializer.collect_str(self),
         }
     }
 }
@@ -82,11 +100,7 @@ impl<'de> Deserialize<'de> for Recover {
             }
 
             fn visit_str<E: serde::de::Error>(self, word: &str) -> Result<Recover, E> {
-                match word {
-                    "auto" => Ok(Recover::Auto),
-                    "none" => Ok(Recover::None),
-                    _ => Err(E::invalid_value(serde::de::Unexpected::Str(word), &self)),
-                }
+                Recover::named(word).ok_or_else(|| E::invalid_value(serde::de::Unexpected::Str(word), &self))
             }
         }
         deserializer.deserialize_any(Visitor)

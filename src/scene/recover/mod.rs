@@ -118,9 +118,9 @@ pub fn recover(pixels: &[[f32; 4]], frame: &Frame, emission: Emission, is_for_di
     assert_eq!(pixels.len(), frame.window.pixels(), "the pixels do not fill the frame's window");
     match by {
         Recover::None => return Recovered::nothing(by),
-        Recover::Auto if !is_for_display => return Recovered::nothing(by),
+        by if by.is_auto() && !is_for_display => return Recovered::nothing(by),
         Recover::Stops(stops) if stops <= 0.0 => return Recovered::nothing(by),
-        Recover::Auto | Recover::Stops(_) => {}
+        Recover::Auto | Recover::AutoFrom(_) | Recover::Stops(_) => {}
     }
     let width = frame.window.width as usize;
     let scale = if is_for_display { Scale::Display } else { Scale::linear(pixels, width, emission) };
@@ -133,6 +133,13 @@ pub fn recover(pixels: &[[f32; 4]], frame: &Frame, emission: Emission, is_for_di
         mask.close(|pixel| emission.share(pixel) > 0.0 && scale.reach(pixel, emission) >= NEARLY, pixels);
     }
     Highlights::new(pixels, frame, emission, scale, mask).recovered(by)
+}
+
+/// The stops of [`Recover::Auto`] in a picture for displays, before what is around a region has its say: by the share of the
+/// picture that is clipped.
+pub fn stops(pixels: &[[f32; 4]], width: usize, emission: Emission) -> f64 {
+    let clipped = clipped(pixels, width, emission, END);
+    of_share(clipped.iter().filter(|&&clipped| clipped).count() as f64 / pixels.len().max(1) as f64)
 }
 
 /// Which pixels are clipped, row by row: those of which alpha leaves something, and the brightest channel reaches `level`; and of a
@@ -303,6 +310,7 @@ impl<'a> Highlights<'a> {
             _ if matches!(self.scale, Scale::Linear(_)) && region.pixels < PATCH => 0.0,
             Recover::Stops(stops) => stops,
             Recover::Auto => of_share(part) * region.standing_out(),
+            Recover::AutoFrom(stops) => stops * region.standing_out(),
             Recover::None => 0.0,
         };
         if clipped == self.pixels.len() {
@@ -366,7 +374,7 @@ impl<'a> Highlights<'a> {
     /// What is said of it; nothing where there was nothing to do.
     fn told(&self, by: Recover, gain: Gain, clipped: usize, part: f64) -> Option<Recovery> {
         let is_patch = |region: &Region| region.pixels >= PATCH;
-        if gain.pixels == 0 && (by != Recover::Auto || !self.regions.iter().any(is_patch)) {
+        if gain.pixels == 0 && (!by.is_auto() || !self.regions.iter().any(is_patch)) {
             return None;
         }
         let luminance =
@@ -378,7 +386,7 @@ impl<'a> Highlights<'a> {
             format!(
                 "{:.0} % of the picture is clipped, more than lamps are: how bright it was is a guess{}",
                 100.0 * part,
-                if by == Recover::Auto { ", and --recover STOPS says another" } else { "" }
+                if by.is_auto() { ", and --recover STOPS says another" } else { "" }
             )
         });
         Some(Recovery { stops: gain.stops, pixels: gain.pixels, clipped, share, note })

@@ -250,7 +250,7 @@ fn find(ui: &mut Ui, document: &mut Document) {
 /// How clipped pixels shine: by their photo's kind, or by so many stops. Where neither that nor a look has something to say, there is no row.
 fn recover(ui: &mut Ui, document: &mut Document, stage: &Stage) {
     let number = |recover| match recover {
-        Recover::Auto => None,
+        Recover::Auto | Recover::AutoFrom(_) => None,
         Recover::None => Some(0.0),
         Recover::Stops(stops) => Some(stops),
     };

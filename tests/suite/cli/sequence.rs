@@ -34,10 +34,11 @@ fn apply<'a>(names: &'a [String], more: &[&'a str]) -> Vec<&'a str> {
     args
 }
 
-/// The files in a folder of the place, by name.
+/// The files in a folder of the place, by name, without what is kept of those that are done.
 fn listed(place: &Workplace, folder: &str) -> Vec<String> {
     let entries = std::fs::read_dir(place.path(folder)).expect("a folder");
     let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.retain(|name| name != ".vglare");
     names.sort();
     names
 }
