@@ -303,6 +303,11 @@ pub enum Error {
     Gl(String),
 }
 
+/// A path as a person is told of it: `-` is no file.
+fn told(path: &Path, standard: &str) -> PathBuf {
+    if path == Path::new("-") { standard.into() } else { path.to_owned() }
+}
+
 impl Error {
     /// Why something cannot be had, without what to ask for instead: for where another way is taken anyway.
     pub(crate) fn reason(&self) -> String {
@@ -343,12 +348,12 @@ impl Error {
 
     /// A [`Error::ReadPhoto`] from anything that can say why.
     pub fn read_photo(path: &Path, reason: impl ToString) -> Self {
-        Self::ReadPhoto { path: path.to_owned(), reason: reason.to_string() }
+        Self::ReadPhoto { path: told(path, "standard input"), reason: reason.to_string() }
     }
 
     /// A [`Error::Write`] from anything that can say why.
     pub fn write(path: &Path, reason: impl ToString) -> Self {
-        Self::Write { path: path.to_owned(), reason: reason.to_string() }
+        Self::Write { path: told(path, "standard output"), reason: reason.to_string() }
     }
 
     /// A [`Error::Threads`] from what the system says.

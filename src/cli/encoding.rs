@@ -5,12 +5,16 @@ use std::path::Path;
 use clap::ValueEnum;
 
 use crate::options::numbers::finite;
-use crate::photo::{self, Depth, ToneMap, WriteOptions};
+use crate::photo::{self, Depth, Format, ToneMap, WriteOptions};
 
 /// How pictures are written.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Output")]
 pub struct EncodingArgs {
+    /// The format, where a file's name does not tell it, as that of standard output, -
+    #[arg(long, value_enum)]
+    format: Option<FormatArg>,
+
     /// Depth of the samples [default: the input's in the same format; otherwise, and for --glare, float for OpenEXR and
     /// TIFF, 8 for PNG]
     #[arg(long, value_enum)]
@@ -29,6 +33,7 @@ impl EncodingArgs {
     /// How a picture is written.
     pub fn picture(&self, overwrite: bool) -> WriteOptions {
         WriteOptions {
+            format: self.format(),
             depth: self.depth.map(Into::into),
             exposure: self.exposure,
             tone_map: self.tonemap.map(Into::into),
@@ -40,8 +45,55 @@ impl EncodingArgs {
     /// picture, that is a depth which the glare's format may not have.
     pub fn glare(&self, path: &Path, beside_picture: bool, overwrite: bool) -> WriteOptions {
         let asked: Option<Depth> = self.depth.map(Into::into);
-        let depth = asked.filter(|&depth| !beside_picture || photo::holds(path, depth));
-        WriteOptions { depth, exposure: 0.0, tone_map: None, overwrite }
+        let depth = asked.filter(|&depth| !beside_picture || photo::holds(path, self.format(), depth));
+        WriteOptions { depth, ..self.other(overwrite) }
+    }
+
+    /// How something else than the picture is written.
+    pub fn other(&self, overwrite: bool) -> WriteOptions {
+        WriteOptions { format: self.format(), depth: None, exposure: 0.0, tone_map: None, overwrite }
+    }
+
+    /// The same beside another file: `--format` is for names that do not tell, and where there is one, for that alone.
+    pub fn beside(options: WriteOptions, path: Option<&Path>, other: Option<&Path>) -> WriteOptions {
+        let tells = |path: &Path| photo::check_name(path, None).is_ok();
+        let is_for_other = path.is_some_and(tells) && other.is_some_and(|other| !tells(other));
+        WriteOptions { format: options.format.filter(|_| !is_for_other), ..options }
+    }
+
+    /// The format of files whose names do not tell theirs.
+    pub fn format(&self) -> Option<Format> {
+        self.format.map(Into::into)
+    }
+}
+
+/// `--format`.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum FormatArg {
+    /// OpenEXR
+    Exr,
+    /// Radiance HDR
+    Hdr,
+    /// Portable float map
+    Pfm,
+    /// TIFF
+    Tiff,
+    /// PNG
+    Png,
+    /// JPEG
+    Jpeg,
+}
+
+impl From<FormatArg> for Format {
+    fn from(format: FormatArg) -> Self {
+        match format {
+            FormatArg::Exr => Self::OpenExr,
+            FormatArg::Hdr => Self::Radiance,
+            FormatArg::Pfm => Self::Pfm,
+            FormatArg::Tiff => Self::Tiff,
+            FormatArg::Png => Self::Png,
+            FormatArg::Jpeg => Self::Jpeg,
+        }
     }
 }
 

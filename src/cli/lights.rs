@@ -26,7 +26,7 @@ use crate::terminal::stdout;
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// The photo: OpenEXR, Radiance HDR, PFM, TIFF, PNG or JPEG
+    /// The photo: OpenEXR, Radiance HDR, PFM, TIFF, PNG, JPEG or JPEG XL; - for standard input
     photo: PathBuf,
 
     /// Print JSON, which can be edited and read back as a file of lights

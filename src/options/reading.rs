@@ -5,7 +5,7 @@ use glam::DVec2;
 
 use crate::Result;
 use crate::options::numbers::finite;
-use crate::photo::{Missing, Primaries, ReadOptions, WhiteLuminance};
+use crate::photo::{MAX_PIXELS, Missing, Primaries, ReadOptions, WhiteLuminance};
 
 /// How photos are read.
 #[derive(Debug, Clone, Copy, clap::Args)]
@@ -24,6 +24,10 @@ pub struct ReadArgs {
     /// lamp that leaves the picture fades, but only OpenEXR keeps it, beyond its display window [default: 0]
     #[arg(long, value_name = "F", value_parser = overscan, allow_hyphen_values = true)]
     overscan: Option<f64>,
+
+    /// The most pixels that a photo's file may say it has, from 1 to 536870912; a larger one is refused before memory is taken
+    #[arg(long, value_name = "N", default_value_t = MAX_PIXELS as u64, value_parser = clap::value_parser!(u64).range(1..=MAX_PIXELS as u64))]
+    max_pixels: u64,
 }
 
 /// `--missing`.
@@ -48,7 +52,13 @@ impl ReadArgs {
             MissingArg::Zero => Missing::Zero,
         };
         let overscan = self.overscan.unwrap_or(0.0);
-        ReadOptions { missing, primaries: self.primaries, overscan, ..ReadOptions::default() }
+        ReadOptions {
+            missing,
+            primaries: self.primaries,
+            overscan,
+            max_pixels: Some(self.max_pixels as usize),
+            ..ReadOptions::default()
+        }
     }
 }
 

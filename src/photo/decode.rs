@@ -1,10 +1,13 @@
 //! From the samples of PNG, JPEG and TIFF to linear light.
 
+use std::sync::Arc;
+
 use glam::{DMat3, Mat3A, Vec3A};
 use image::metadata::Orientation;
 use rayon::prelude::*;
 
 use super::icc::{Profile, Way};
+use super::native::Native;
 use super::transfer::Curve;
 use super::{Alpha, Depth, Format, Photo, Primaries, Reason, Source, zeroed};
 use crate::frame::Frame;
@@ -36,6 +39,17 @@ impl Shaper {
         let clean = |entry: f64| if entry.abs() < 1e-9 { 0.0 } else { entry };
         let matrix = primaries.map(|p| DMat3::from_cols_array(&p.to_rec709().to_cols_array().map(clean)));
         Self { curves, matrix, space }
+    }
+
+    /// Whether it is sRGB.
+    pub fn is_srgb(&self) -> bool {
+        self.matrix.is_none() && self.curves.iter().all(|curve| *curve == Curve::Srgb)
+    }
+
+    /// Whether there is a way from light back to the codes.
+    pub fn has_inverse(&self) -> bool {
+        let matrix = self.matrix.is_none_or(|matrix| matrix.determinant().abs() > 1e-6 && matrix.is_finite());
+        matrix && self.curves.iter().all(Curve::has_inverse)
     }
 }
 
@@ -168,6 +182,7 @@ impl<T: Sample> Raster<T> {
             grey: self.channels < 3,
             display_referred: T::DEPTH.is_display(),
             space: encoding.space().cloned(),
+            native: Native::of(encoding).map(Arc::new),
             ..Source::plain()
         };
         let (width, height) = (self.width, self.height);
@@ -222,6 +237,12 @@ impl<T: Sample> Raster<T> {
             Ok(())
         })
     }
+}
+
+/// The colour of which a pixel holds as much as it covers; none where it covers nothing, and none beyond white.
+pub(super) fn divide_by_alpha(pixel: &mut [f32]) {
+    let Some((&mut alpha, colours)) = pixel.split_last_mut() else { return };
+    colours.iter_mut().for_each(|c| *c = if alpha > 0.0 { (*c / alpha).min(1.0) } else { 0.0 });
 }
 
 /// Whether what was the width becomes the height.

@@ -6,6 +6,8 @@
 use glam::{Mat3A, Vec3A};
 use rayon::prelude::*;
 
+use super::native::{Codes, Native};
+use super::tone::sound;
 use super::transfer::srgb_encode;
 use super::{Alpha, Photo, Reason, ToneMap, zeroed};
 
@@ -16,6 +18,19 @@ pub(super) struct Look {
     pub gain: f32,
     /// Applied next.
     pub tone_map: ToneMap,
+}
+
+impl Look {
+    /// Where light of Rec. 709 lies between the codes 0..=MAX of a space, or of sRGB.
+    fn encoded<T: Code>(self, light: [f32; 3], codes: Option<&Codes<'_>>) -> [f32; 3] {
+        let light = light.map(|c| c * self.gain);
+        match codes {
+            // Without a tone map, what is beyond sRGB stays where the space holds it.
+            Some(codes) if self.tone_map == ToneMap::None => codes.places(sound(light)),
+            Some(codes) => codes.places(self.tone_map.apply(light)),
+            None => self.tone_map.apply(light).map(|c| srgb_encode(c) * T::MAX),
+        }
+    }
 }
 
 /// The samples of a picture, ready for an encoder.
@@ -71,8 +86,14 @@ pub(super) fn is_grey(photo: &Photo) -> bool {
     photo.source.grey && photo.pixels.par_iter().all(same)
 }
 
-/// The samples of the whole picture; alpha goes along where `alpha` says so.
-pub(super) fn encode<T: Code>(photo: &Photo, look: Look, alpha: bool) -> Result<Samples<T>, Reason> {
+/// The samples of the whole picture, in the `native` space or in sRGB; alpha goes along where `alpha` says so.
+pub(super) fn encode<T: Code>(
+    photo: &Photo,
+    look: Look,
+    alpha: bool,
+    native: Option<&Native>,
+) -> Result<Samples<T>, Reason> {
+    let codes = native.map(Codes::new::<T>);
     let grey = is_grey(photo);
     let channels = if grey { 1 } else { 3 } + usize::from(alpha);
     let width = photo.width() as usize;
@@ -89,13 +110,13 @@ pub(super) fn encode<T: Code>(photo: &Photo, look: Look, alpha: bool) -> Result<
             let cover = if associated { a.clamp(0.0, 1.0) } else { 1.0 };
             let light = light.map(|c| if cover > 0.0 { c / cover } else { 0.0 });
             let top = if associated { covered.number() } else { T::MAX };
-            let shown = look.tone_map.apply(light.map(|c| c * look.gain));
+            let encoded = look.encoded::<T>(light, codes.as_ref());
             // The same noise for all three colours: grey stays grey.
             let noise = T::DITHER * (2.0 * gradient_noise(x as f32, y as f32) - 1.0);
-            let code = |c: f32| T::new((srgb_encode(c) * top + noise).round().clamp(0.0, top));
-            out[0] = code(shown[0]);
+            let code = |c: f32| T::new((c * (top / T::MAX) + noise).round().clamp(0.0, top));
+            out[0] = code(encoded[0]);
             if !grey {
-                (out[1], out[2]) = (code(shown[1]), code(shown[2]));
+                (out[1], out[2]) = (code(encoded[1]), code(encoded[2]));
             }
             if alpha {
                 out[channels - 1] = covered;
@@ -127,7 +148,7 @@ mod tests {
         let light = |c: usize| Curve::Srgb.light(c as f64 / 255.0) as f32;
         let codes = (0..256 * 64).map(|i| (i % 256 + i / 256 * 37) % 256).collect::<Vec<_>>();
         let pixels = codes.iter().map(|&c| [light(c), light(255 - c), light(c / 2), 1.0]).collect();
-        let got = encode::<u8>(&Photo::new(256, 64, pixels), PLAIN, false).unwrap();
+        let got = encode::<u8>(&Photo::new(256, 64, pixels), PLAIN, false, None).unwrap();
         for (&c, got) in codes.iter().zip(got.data.chunks_exact(3)) {
             assert_eq!(got, [c as u8, 255 - c as u8, c as u8 / 2]);
         }
@@ -150,14 +171,14 @@ mod tests {
         pixels.extend([[0.7, 0.7, 0.7, 0.0], [9.0, 9.0, 9.0, 128.0 / 255.0]]);
         let mut photo = Photo::new(pixels.len() as u32, 1, pixels);
         photo.source.alpha = Alpha::Premultiplied;
-        let got = encode::<u8>(&photo, PLAIN, true).unwrap();
+        let got = encode::<u8>(&photo, PLAIN, true, None).unwrap();
         assert!(got.data.chunks_exact(4).eq(want), "a code changed");
     }
 
     #[test]
     fn dither_keeps_the_mean_of_light_between_two_codes() {
         let between = (Curve::Srgb.light(100.0 / 255.0) * 0.7 + Curve::Srgb.light(101.0 / 255.0) * 0.3) as f32;
-        let got = encode::<u8>(&Photo::new(200, 200, vec![[between; 4]; 40_000]), PLAIN, false).unwrap();
+        let got = encode::<u8>(&Photo::new(200, 200, vec![[between; 4]; 40_000]), PLAIN, false, None).unwrap();
         let mean = got.data.iter().map(|&c| f64::from(c)).sum::<f64>() / got.data.len() as f64;
         assert!(got.data.iter().all(|c| (100..=101).contains(c)));
         assert!((mean - 100.3).abs() < 0.03, "{mean}");
@@ -167,7 +188,7 @@ mod tests {
     fn exposure_is_in_stops_and_bad_pixels_have_a_place() {
         let bad = [f32::NAN, f32::NEG_INFINITY, f32::INFINITY, f32::NAN];
         let photo = Photo::new(2, 1, vec![[0.25, 0.25, 0.5, 1.0], bad]);
-        let got = encode::<u16>(&photo, Look { gain: 2.0, tone_map: ToneMap::None }, true).unwrap();
+        let got = encode::<u16>(&photo, Look { gain: 2.0, tone_map: ToneMap::None }, true, None).unwrap();
         let half = (srgb_encode(0.5) * 65535.0).round() as u16;
         assert_eq!(got.data, [half, half, 65535, 65535, 0, 0, 65535, 0]);
     }

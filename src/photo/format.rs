@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use super::Reason;
+use super::{Reason, foreign};
 
-/// A file format that vglare reads and writes.
+/// A file format that vglare reads, and writes but for the last.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Format {
     /// OpenEXR, `.exr`.
@@ -19,6 +19,8 @@ pub enum Format {
     Png,
     /// JPEG, `.jpg` or `.jpeg`.
     Jpeg,
+    /// JPEG XL, which is read and not written.
+    JpegXl,
 }
 
 /// How one sample is stored.
@@ -36,7 +38,7 @@ pub enum Depth {
     Uint,
 }
 
-const NAMES: &str = "OpenEXR, Radiance HDR, PFM, TIFF, PNG or JPEG";
+const NAMES: &str = "OpenEXR, Radiance HDR, PFM, TIFF, PNG, JPEG or JPEG XL";
 const EXTENSIONS: &str = ".exr, .hdr, .pfm, .tif, .tiff, .png, .jpg or .jpeg";
 
 impl Format {
@@ -49,6 +51,7 @@ impl Format {
             Self::Tiff => "TIFF",
             Self::Png => "PNG",
             Self::Jpeg => "JPEG",
+            Self::JpegXl => "JPEG XL",
         }
     }
 
@@ -59,7 +62,7 @@ impl Format {
             Self::Radiance | Self::Pfm => &[Depth::Float],
             Self::Tiff => &[Depth::Eight, Depth::Sixteen, Depth::Float],
             Self::Png => &[Depth::Sixteen, Depth::Eight],
-            Self::Jpeg => &[Depth::Eight],
+            Self::Jpeg | Self::JpegXl => &[Depth::Eight],
         }
     }
 
@@ -73,11 +76,11 @@ impl Format {
             [b'I', b'I', 42 | 43, 0, ..] | [b'M', b'M', 0, 42 | 43, ..] => Ok(Self::Tiff),
             [0x89, b'P', b'N', b'G', b'\r', b'\n', 0x1a, b'\n', ..] => Ok(Self::Png),
             [0xff, 0xd8, 0xff, ..] => Ok(Self::Jpeg),
-            _ => Err(match other_name(head) {
-                Some(name) => format!("it is a {name} file; vglare reads {NAMES}"),
-                None => format!("it is not a picture of a known kind; vglare reads {NAMES}"),
+            [0xff, 0x0a, ..] | [0, 0, 0, 12, b'J', b'X', b'L', b' ', ..] => Ok(Self::JpegXl),
+            _ => {
+                let unknown = || format!("it is not a picture of a known kind; vglare reads {NAMES}");
+                Err(foreign::refusal(head).unwrap_or_else(unknown).into())
             }
-            .into()),
         }
     }
 
@@ -91,27 +94,22 @@ impl Format {
             "tif" | "tiff" => Ok(Self::Tiff),
             "png" => Ok(Self::Png),
             "jpg" | "jpeg" => Ok(Self::Jpeg),
-            "" => Err(format!("its name has no extension; vglare writes {EXTENSIONS}").into()),
+            "" => Err(format!("its name has no extension; vglare writes {EXTENSIONS}, or what --format says").into()),
             other => Err(format!("vglare writes {EXTENSIONS}, not .{other}").into()),
         }
     }
-}
 
-/// The name of a format that is known by its first bytes, but not read.
-fn other_name(head: &[u8]) -> Option<String> {
-    let name = match head {
-        [0xff, 0x0a, ..] | [0, 0, 0, 12, b'J', b'X', b'L', b' ', ..] => "JPEG XL",
-        [0, 0, 0, 12, b'j', b'P', b' ', b' ', ..] | [0xff, 0x4f, 0xff, 0x51, ..] => "JPEG 2000",
-        // ISO base media: the brand says whose. ISO/IEC 23008-12, annex B.
-        [_, _, _, _, b'f', b't', b'y', b'p', brand @ ..] => match brand.get(..4) {
-            Some(b"heic" | b"heix" | b"heim" | b"heis" | b"hevc" | b"mif1" | b"msf1") => "HEIC",
-            Some(b"avif" | b"avis") => "AVIF",
-            Some(b"crx ") => "Canon CR3",
-            _ => "film",
-        },
-        _ => return image::guess_format(head).ok().map(|other| other.extensions_str()[0].to_uppercase()),
-    };
-    Some(name.to_owned())
+    /// The format that a file's name asks for, or that is asked for where the name does not tell.
+    pub(super) fn of_name(path: &Path, asked: Option<Self>) -> Result<Self, Reason> {
+        match (Self::from_extension(path), asked) {
+            (Ok(named), Some(asked)) if named != asked => {
+                Err(format!("its name says {}, and --format {}", named.name(), asked.name()).into())
+            }
+            (_, Some(Self::JpegXl)) => Err("vglare reads JPEG XL, and does not write it".into()),
+            (Err(_), Some(asked)) => Ok(asked),
+            (named, _) => named,
+        }
+    }
 }
 
 impl Depth {

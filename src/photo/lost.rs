@@ -2,21 +2,33 @@
 
 use std::path::Path;
 
-use super::{Format, Photo, WriteOptions, write};
+use super::{Format, Photo, ToneMap, WriteOptions, metadata, native, write};
 
 /// What a person ought to know of how `photo` becomes `path` with these options, a sentence each: nothing where it
 /// keeps its colours' meaning, or where [`write()`](super::write()) would refuse.
 pub fn lost(path: &Path, photo: &Photo, options: &WriteOptions) -> Vec<String> {
     let Ok((format, depth)) = write::kind(path, photo, options) else { return Vec::new() };
-    colours(photo, format, depth.is_display()).into_iter().chain(exposure(photo, format)).collect()
+    let beside = metadata::of(photo).map_or(Vec::new(), |metadata| metadata.lost(format));
+    let mapped = options.tone_map.is_some_and(|map| map != ToneMap::None);
+    colours(photo, format, depth.is_display(), mapped)
+        .into_iter()
+        .chain(exposure(photo, format))
+        .chain(beside)
+        .collect()
 }
 
-fn colours(photo: &Photo, format: Format, display: bool) -> Option<String> {
+/// What becomes of colours, in a file for displays, whose tone map may have been asked for, or in one of light.
+fn colours(photo: &Photo, format: Format, display: bool, mapped: bool) -> Option<String> {
     let source = &photo.source;
     let name = |primaries: super::Primaries| primaries.title().unwrap_or("primaries of their own").to_owned();
     let own = source.primaries.map(name);
     if display {
         let from = own.or(source.space.clone())?;
+        if native::of(photo, format).is_some() {
+            return mapped.then(|| {
+                format!("the tone map is sRGB's: of the photo's colours, {from}, those outside it are clipped")
+            });
+        }
         return Some(format!("the photo's colours, {from}, are written as sRGB, and those outside it are clipped"));
     }
     match format {

@@ -1,15 +1,16 @@
 //! Pictures in and out: linear light, RGBA f32.
 //!
-//! [`read()`] takes OpenEXR, Radiance HDR, PFM, TIFF, PNG and JPEG, told apart by their content; [`write()`] writes the
-//! same six, told apart by the name's extension.
+//! [`read()`] takes OpenEXR, Radiance HDR, PFM, TIFF, PNG, JPEG and JPEG XL, told apart by their content; [`write()`] writes
+//! all but the last, told apart by the name's extension or by what is asked for.
 //!
 //! # What the numbers mean
 //!
-//! OpenEXR, Radiance HDR, PFM and float TIFF hold *scene-linear* light; their values are taken over untouched. Integer
-//! TIFF, PNG and JPEG are *display-referred*: an embedded ICC profile (PNG also: cICP, gAMA, cHRM) decodes them, and
+//! OpenEXR, Radiance HDR, PFM, float TIFF and float JPEG XL hold *scene-linear* light; their values are taken over untouched. Integer
+//! TIFF, PNG, JPEG and JPEG XL are *display-referred*: an embedded ICC profile (PNG also: cICP, gAMA, cHRM) decodes them, and
 //! where there is none the sRGB curve. Their pixels come out in linear light of Rec.709 primaries, 1 is display white.
 //! What a file says wrongly or in an unknown way becomes one of [`Source::notes`], and what an output cannot hold of a
-//! photo's colours is told by [`lost()`]. Pictures for displays are written as sRGB, and say so.
+//! photo's colours is told by [`lost()`]. Pictures for displays are written in the colour space that they were in, or as
+//! sRGB, and say so.
 //! A JPEG with a gain map (Ultra HDR) is brightened by it, and counts as scene-linear light of Rec.709 primaries.
 //!
 //! What a number is in cd/m² is known where a person or the file says it: [`Photo::luminance_scale`].
@@ -34,11 +35,15 @@ mod cicp;
 mod decode;
 mod display;
 mod exr;
+mod foreign;
 mod format;
 mod icc;
 mod jpeg;
+mod jxl;
 mod lost;
 mod luminance;
+mod metadata;
+mod native;
 mod pfm;
 mod png;
 mod primaries;
@@ -125,6 +130,10 @@ pub struct Source {
     pub(crate) luminance: Option<luminance::Said>,
     /// What it says of the camera; [`Photo::view`] tells what follows.
     camera: Option<camera::Camera>,
+    /// The colour space in which a picture for displays is written again, where that is not sRGB.
+    native: Option<Arc<native::Native>>,
+    /// What a picture for displays, or a TIFF, says beside its pixels.
+    metadata: Option<Arc<metadata::Metadata>>,
     /// Whether it is more to be written fast than small.
     quick: bool,
     /// Everything else that an OpenEXR file held.
@@ -163,6 +172,8 @@ impl Source {
             overscan: [0; 2],
             luminance: None,
             camera: None,
+            native: None,
+            metadata: None,
             quick: false,
             exr: None,
             radiance: None,

@@ -1,16 +1,23 @@
 //! Opens a file, tells its format by its content, and decodes it.
 
+use std::cell::Cell;
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Cursor, Read, Seek};
+use std::io::{self, BufRead, BufReader, Cursor, IsTerminal as _, Read, Seek};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use super::{Format, Photo, Primaries, Reason, WhiteLuminance, exr, jpeg, luminance, pfm, png, radiance, tiff};
+use super::{Format, Photo, Primaries, Reason, WhiteLuminance, exr, jpeg, jxl, luminance, pfm, png, radiance, tiff};
 use crate::error::{Error, Result};
 use crate::frame::Frame;
+use crate::target;
 
 /// The most pixels that a photo may have, 2^29: 8 GiB in memory.
 pub const MAX_PIXELS: usize = 1 << 29;
+
+thread_local! {
+    /// The most pixels of the photo that this thread is reading: decoders ask for it from deep within.
+    static MOST_PIXELS: Cell<usize> = const { Cell::new(MAX_PIXELS) };
+}
 
 /// What becomes of pixels that an unfinished file lacks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -34,9 +41,11 @@ pub struct ReadOptions {
     /// What part of the file's width and height lies beyond each edge of the picture, from 0 to less than 1/2: pixels there are stored,
     /// and shine, but are none of the picture.
     pub overscan: f64,
+    /// The most pixels that the file may say it has, at most [`MAX_PIXELS`], which is the default.
+    pub max_pixels: Option<usize>,
 }
 
-/// Reads a photo.
+/// Reads a photo; `-` is standard input.
 ///
 /// # Errors
 /// [`Error::ReadPhoto`] with the reason: missing, empty, cut short, damaged, of another kind, of no or more than
@@ -54,10 +63,10 @@ pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Photo> {
         let mut reader = open(path)?;
         let format = Format::from_magic(reader.fill_buf()?)?;
         let mut photo = decode(reader, format, options)?;
-        // A JPEG with a gain map is scene-linear, and of Rec. 709's primaries whatever its own are.
+        // A JPEG with a gain map is scene-linear, and of Rec. 709's primaries whatever its own are, as is what comes of JPEG XL.
         if let Some(primaries) = options.primaries
             && !photo.source.display_referred
-            && format != Format::Jpeg
+            && !matches!(format, Format::Jpeg | Format::JpegXl)
         {
             photo.source.primaries = primaries.other_than_rec709();
         }
@@ -67,7 +76,10 @@ pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Photo> {
         Ok(photo)
     };
     // Decoders of foreign files are the one place where a panic is not a bug of ours.
-    match catch_unwind(AssertUnwindSafe(decoded)) {
+    MOST_PIXELS.set(options.max_pixels.map_or(MAX_PIXELS, |most| most.min(MAX_PIXELS)));
+    let result = catch_unwind(AssertUnwindSafe(decoded));
+    MOST_PIXELS.set(MAX_PIXELS);
+    match result {
         Ok(Ok(photo)) => Ok(photo),
         Ok(Err(reason)) => Err(Error::read_photo(path, explain(&*reason))),
         Err(_) => Err(Error::read_photo(path, "the file is damaged, and its decoder gave up")),
@@ -108,6 +120,7 @@ fn decode(reader: Box<dyn Input>, format: Format, options: &ReadOptions) -> std:
         Format::Tiff => tiff::read(reader, options),
         Format::Png => png::read(reader, options),
         Format::Jpeg => jpeg::read(reader, options),
+        Format::JpegXl => jxl::read(reader, options),
     }
 }
 
@@ -116,7 +129,13 @@ trait Input: BufRead + Seek {}
 impl<T: BufRead + Seek> Input for T {}
 
 fn open(path: &Path) -> std::result::Result<Box<dyn Input>, Reason> {
-    let mut file = File::open(path)?;
+    if target::is_standard(path) {
+        if io::stdin().is_terminal() {
+            return Err("it is a terminal; give a file, or lead a photo into it by < or |".into());
+        }
+        return whole(io::stdin().lock());
+    }
+    let file = File::open(path)?;
     let kind = file.metadata()?;
     if kind.is_dir() {
         return Err("it is a folder".into());
@@ -124,11 +143,15 @@ fn open(path: &Path) -> std::result::Result<Box<dyn Input>, Reason> {
     if kind.is_file() {
         return Ok(Box::new(BufReader::with_capacity(1 << 16, file)));
     }
-    // Decoders jump about, which a pipe cannot; a device that never ends is turned away by its first bytes.
+    whole(file)
+}
+
+/// All that a stream has: decoders jump about, which a pipe cannot. One that never ends is turned away by its first bytes.
+fn whole(mut stream: impl Read) -> std::result::Result<Box<dyn Input>, Reason> {
     let mut head = Vec::new();
-    file.by_ref().take(64).read_to_end(&mut head)?;
+    stream.by_ref().take(64).read_to_end(&mut head)?;
     Format::from_magic(&head)?;
-    file.read_to_end(&mut head)?;
+    stream.read_to_end(&mut head)?;
     Ok(Box::new(Cursor::new(head)))
 }
 
@@ -136,8 +159,10 @@ fn open(path: &Path) -> std::result::Result<Box<dyn Input>, Reason> {
 pub(super) fn check_size(width: u32, height: u32) -> std::result::Result<usize, Reason> {
     match width as usize * height as usize {
         0 => Err(format!("it has no pixels: {width} × {height}").into()),
-        count if count > MAX_PIXELS => {
-            Err(format!("it says that it has {width} × {height} pixels, more than {MAX_PIXELS}").into())
+        count if count > MOST_PIXELS.get() => {
+            let most = MOST_PIXELS.get();
+            let why = if most < MAX_PIXELS { "that --max-pixels allows" } else { "that vglare reads" };
+            Err(format!("it says that it has {width} × {height} pixels, more than the {most} {why}").into())
         }
         count => {
             // Pixels, and the samples that they are made from.

@@ -27,8 +27,7 @@ const BRIGHTEST: f32 = 1e9;
 impl ToneMap {
     /// Linear Rec.709 light, any value, to linear light in 0..=1; NaN and −∞ become 0.
     pub fn apply(self, rgb: [f32; 3]) -> [f32; 3] {
-        let sound = |c: f32| if c.is_nan() || c == f32::NEG_INFINITY { 0.0 } else { c.clamp(-BRIGHTEST, BRIGHTEST) };
-        let light = Vec3A::from(rgb.map(sound));
+        let light = Vec3A::from(sound(rgb));
         let light = match self {
             Self::None => light,
             Self::Reinhard => reinhard(light),
@@ -37,6 +36,11 @@ impl ToneMap {
         };
         light.clamp(Vec3A::ZERO, Vec3A::ONE).to_array()
     }
+}
+
+/// Light of which everything can be computed: NaN and −∞ are 0.
+pub(super) fn sound(rgb: [f32; 3]) -> [f32; 3] {
+    rgb.map(|c| if c.is_nan() || c == f32::NEG_INFINITY { 0.0 } else { c.clamp(-BRIGHTEST, BRIGHTEST) })
 }
 
 fn reinhard(light: Vec3A) -> Vec3A {

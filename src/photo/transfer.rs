@@ -55,6 +55,47 @@ impl Curve {
         }
     }
 
+    /// The encoded value of `light`, the inverse of [`Self::light`]; where several have that light, one of them.
+    pub fn encoded(&self, light: f64) -> f64 {
+        self.encoded_of_positive(light.abs()).copysign(light)
+    }
+
+    fn encoded_of_positive(&self, light: f64) -> f64 {
+        match self {
+            Self::Linear => light,
+            Self::Srgb if light <= 0.04045 / 12.92 => light * 12.92,
+            Self::Srgb => 1.055 * light.powf(1.0 / 2.4) - 0.055,
+            Self::Power(exponent) => light.powf(exponent.recip()),
+            Self::Rec709 if light < 0.081 / 4.5 => light * 4.5,
+            Self::Rec709 => 1.099 * light.powf(0.45) - 0.099,
+            Self::Pq => pq_signal(light * 203.0 / 10_000.0),
+            Self::Hlg => hlg_signal(light * hlg(0.75)),
+            &Self::Parametric([g, a, b, c, d, e, f]) => {
+                if light >= self.light_of_positive(d.max(0.0)) {
+                    (((light - e).max(0.0).powf(g.recip()) - b) / a).max(d.max(0.0))
+                } else if c != 0.0 {
+                    (light - f) / c
+                } else {
+                    0.0
+                }
+            }
+            Self::Table(steps) => {
+                let above = steps.partition_point(|&step| step < light).clamp(1, steps.len() - 1);
+                let (low, high) = (steps[above - 1], steps[above]);
+                let part = if high > low { (light - low) / (high - low) } else { 1.0 };
+                (above as f64 - 1.0 + part) / (steps.len() - 1) as f64
+            }
+        }
+    }
+
+    /// Whether light tells the encoded value: it rises with it over 0..1, and [`Self::encoded`] finds the way back.
+    pub fn has_inverse(&self) -> bool {
+        let lights: Vec<f64> = (0..=255).map(|code| self.light(f64::from(code) / 255.0)).collect();
+        let span = lights[255] - lights[0];
+        let back = |&light: &f64| (self.light(self.encoded(light)) - light).abs() <= 1e-9 * span;
+        span > 0.0 && lights.is_sorted() && lights.iter().all(back)
+    }
+
     /// The curve that this one is, as nearly as profiles can say it, where it is straight or sRGB's.
     pub fn recognised(self) -> Self {
         // Profiles round curves to 16 bits, and sRGB's to a few hundred points.
@@ -82,10 +123,25 @@ fn pq(v: f64) -> f64 {
     ((e - c1).max(0.0) / (c2 - c3 * e)).powf(1.0 / m1)
 }
 
+/// \[2100\] table 4: the PQ signal of cd/m² / 10000.
+fn pq_signal(light: f64) -> f64 {
+    let (m1, m2) = (2610.0 / 16384.0, 2523.0 / 4096.0 * 128.0);
+    let (c1, c2, c3) = (3424.0 / 4096.0, 2413.0 / 4096.0 * 32.0, 2392.0 / 4096.0 * 32.0);
+    let y = light.powf(m1);
+    // Of no light at all it is 7e-7, which no code shows.
+    if light == 0.0 { 0.0 } else { ((c1 + c2 * y) / (1.0 + c3 * y)).powf(m2) }
+}
+
 /// \[2100\] table 5: scene light in 0..1 of an HLG signal.
 fn hlg(v: f64) -> f64 {
     let (a, b, c) = (0.178_832_77, 0.284_668_92, 0.559_910_73);
     if v <= 0.5 { v * v / 3.0 } else { (((v - c) / a).exp() + b) / 12.0 }
+}
+
+/// \[2100\] table 5: the HLG signal of scene light in 0..1.
+fn hlg_signal(light: f64) -> f64 {
+    let (a, b, c) = (0.178_832_77, 0.284_668_92, 0.559_910_73);
+    if light <= 1.0 / 12.0 { (3.0 * light).sqrt() } else { a * (12.0 * light - b).ln() + c }
 }
 
 /// \[SRGB\] the encoded value of `light` in 0..1.
@@ -125,6 +181,36 @@ mod tests {
         assert!(table.light(f64::NAN).is_nan());
         assert_eq!(Curve::Table([0.0, 1.0, 1.0].into()).light(f64::INFINITY), 1.0);
         assert_eq!(Curve::Table([0.0, 0.5, 1.0].into()).recognised(), Curve::Linear);
+    }
+
+    #[test]
+    fn every_curve_has_the_way_back_that_it_says() {
+        let srgb = Curve::Parametric([2.4, 1.0 / 1.055, 0.055 / 1.055, 1.0 / 12.92, 0.04045, 0.0, 0.0]);
+        let curves = [
+            Curve::Linear,
+            Curve::Srgb,
+            Curve::Power(2.2),
+            Curve::Rec709,
+            Curve::Pq,
+            Curve::Hlg,
+            srgb,
+            // A floor that is flat, as in type 1, and one that is lifted.
+            Curve::Parametric([1.8, 2.0, -0.5, 0.0, 0.25, 0.0, 0.0]),
+            Curve::Parametric([2.2, 0.9, 0.05, 0.1, 0.1, 0.02, 0.01]),
+            Curve::Table([0.0, 0.0, 0.25, 1.0, 1.0].into()),
+        ];
+        for curve in curves {
+            assert!(curve.has_inverse(), "{curve:?}");
+            for k in 0..=1000 {
+                let light = curve.light(f64::from(k) * 1e-3);
+                let back = curve.light(curve.encoded(light));
+                assert!((back - light).abs() <= 1e-12 * curve.light(1.0), "{curve:?}: {back} for {light}");
+            }
+        }
+        // What falls has none, and neither has what stands still.
+        for curve in [Curve::Table([0.0, 0.6, 0.5, 1.0].into()), Curve::Table([0.5, 0.5].into())] {
+            assert!(!curve.has_inverse(), "{curve:?}");
+        }
     }
 
     #[test]

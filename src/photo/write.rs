@@ -10,6 +10,8 @@ use crate::target::{Sink, Target};
 /// How a photo is written.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct WriteOptions {
+    /// The format, where the file's name does not tell it; an error where it tells another.
+    pub format: Option<Format>,
     /// How samples are stored. By default OpenEXR and TIFF keep the input's depth if it was of the same format, else
     /// they are float; PNG is 16 bit if the input was, else 8; the others have one depth.
     pub depth: Option<Depth>,
@@ -29,17 +31,17 @@ struct Plan {
     target: Target,
 }
 
-/// Whether [`write()`] knows the format that a name's extension asks for.
+/// Whether [`write()`] knows the format that a name's extension asks for, or that is asked for where it does not tell.
 ///
 /// # Errors
-/// [`Error::Write`] where it does not.
-pub fn check_name(path: &Path) -> Result<()> {
-    Format::from_extension(path).map(drop).map_err(|reason| Error::write(path, reason))
+/// [`Error::Write`] where it does not, or where the two differ.
+pub fn check_name(path: &Path, format: Option<Format>) -> Result<()> {
+    Format::of_name(path, format).map(drop).map_err(|reason| Error::write(path, reason))
 }
 
-/// Whether the format that a name's extension asks for holds samples of this depth.
-pub(crate) fn holds(path: &Path, depth: Depth) -> bool {
-    Format::from_extension(path).is_ok_and(|format| format.depths().contains(&depth))
+/// Whether the format that a name or `format` asks for holds samples of this depth.
+pub(crate) fn holds(path: &Path, format: Option<Format>, depth: Depth) -> bool {
+    Format::of_name(path, format).is_ok_and(|format| format.depths().contains(&depth))
 }
 
 /// Whether [`write()`] would accept this target and these options: ask before the long work starts.
@@ -67,11 +69,14 @@ pub fn largest_value(path: &Path, photo: &Photo, options: &WriteOptions) -> Resu
     })
 }
 
-/// Writes a photo in the format that the extension names (`.exr .hdr .pfm .tif .tiff .png .jpg .jpeg`).
+/// Writes a photo in the format that the extension names (`.exr .hdr .pfm .tif .tiff .png .jpg .jpeg`), or the options
+/// where it names none; `-` is standard output.
 ///
-/// Scene-linear formats get the pixels as they are; display formats get exposure, tone map and the sRGB curve, and at
-/// 8 bit a dither that leaves values alone which sit on a code. All but OpenEXR get the picture only, padded with
-/// transparent black, in Rec.709 primaries. OpenEXR keeps all else that the input file held, if it was OpenEXR.
+/// Scene-linear formats get the pixels as they are; display formats get exposure, tone map and the curves of the photo's
+/// own colour space, where it was display-referred, or of sRGB, and at 8 bit a dither that leaves values alone which sit
+/// on a code. All but OpenEXR get the picture only, padded with transparent black; what is scene-linear, in Rec.709
+/// primaries. OpenEXR keeps all else that the input file held, if it was OpenEXR; PNG, TIFF and JPEG keep Exif, XMP, IPTC
+/// and the resolution of one of these, as far as they can hold them.
 ///
 /// The file appears under its name only when it is complete.
 ///
@@ -101,20 +106,28 @@ impl Plan {
             (Format::Png, Depth::Sixteen) => png::write::<u16>(&mut writer, photo, self.look),
             (Format::Png, _) => png::write::<u8>(&mut writer, photo, self.look),
             (Format::Jpeg, _) => jpeg::write(&mut writer, photo, self.look),
+            (Format::JpegXl, _) => Err("vglare does not write JPEG XL".into()),
         }
     }
 }
 
 fn plan(path: &Path, photo: &Photo, options: &WriteOptions) -> Result<Plan> {
     // Field by field: a new one has to be used here, or not to be.
-    let &WriteOptions { depth: asked, exposure, tone_map, overwrite } = options;
-    let resolved = Format::from_extension(path).and_then(|format| {
+    let &WriteOptions { format, depth: asked, exposure, tone_map, overwrite } = options;
+    let resolved = Format::of_name(path, format).and_then(|format| {
         check_picture(photo, format)?;
         let depth = depth(format, photo, asked)?;
         Ok((format, depth, look(format, depth, photo, exposure, tone_map)?))
     });
     let (format, depth, look) = resolved.map_err(|reason| Error::write(path, reason))?;
-    Ok(Plan { format, depth, look, target: Target::new(path, overwrite)? })
+    let target = Target::new(path, overwrite)?;
+    if target.is_terminal() {
+        return Err(Error::write(
+            path,
+            "standard output is a terminal; lead it into a file by >, or into a program by |",
+        ));
+    }
+    Ok(Plan { format, depth, look, target })
 }
 
 /// The format and the depth that a photo is written in.
@@ -122,8 +135,8 @@ fn plan(path: &Path, photo: &Photo, options: &WriteOptions) -> Result<Plan> {
 /// # Errors
 /// Where the name or the options ask for what there is not.
 pub(super) fn kind(path: &Path, photo: &Photo, options: &WriteOptions) -> Result<(Format, Depth), Reason> {
-    let &WriteOptions { depth: asked, exposure: _, tone_map: _, overwrite: _ } = options;
-    let format = Format::from_extension(path)?;
+    let &WriteOptions { format, depth: asked, exposure: _, tone_map: _, overwrite: _ } = options;
+    let format = Format::of_name(path, format)?;
     Ok((format, depth(format, photo, asked)?))
 }
 

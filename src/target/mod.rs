@@ -4,7 +4,7 @@
 //! disk, and not by a loss of power either, since the file is on the disk before it gets its name. Once a write has come
 //! back without an error, the name is on the disk too (where the file system has such a thing). A link is followed and
 //! stays a link; a file that is replaced keeps its permissions. What is no file, as a pipe or a device, is written to as
-//! it is.
+//! it is; `-` is standard output.
 //!
 //! | module | what it does |
 //! | --- | --- |
@@ -15,7 +15,7 @@ pub(crate) mod part;
 mod same;
 
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Cursor, Seek, SeekFrom, Write};
+use std::io::{self, BufWriter, Cursor, IsTerminal as _, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -79,6 +79,11 @@ impl Target {
             return Err(Error::write(given, format!("there is no folder {}", folder.display())));
         }
         found(Place::File { path, folder })
+    }
+
+    /// Whether what is written would be seen on a terminal.
+    pub fn is_terminal(&self) -> bool {
+        matches!(self.place, Place::Stdout) && io::stdout().is_terminal()
     }
 
     /// Whether its folder takes a file: one made and removed again is the one honest test.
@@ -301,8 +306,16 @@ fn followed(given: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other("its links lead round and round"))
 }
 
-/// Whether a path is one of the names that Unix has for standard output.
+/// Whether a path is `-`: standard input where it is read, standard output where it is written. A file of that name is `./-`.
+pub(crate) fn is_standard(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// Whether a path is `-`, or one of the names that Unix has for standard output.
 fn is_stdout(path: &Path) -> bool {
+    if is_standard(path) {
+        return true;
+    }
     let names = ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"];
     let is = |path: &Path| names.iter().any(|name| path == Path::new(name));
     // A link to it, as under a name that ends in .exr.

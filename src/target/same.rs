@@ -21,6 +21,8 @@ impl Identity {
     /// That of the file which a path leads to; none for the one that everything may be written to at once, since it keeps
     /// nothing.
     pub fn of(path: &Path) -> Option<Self> {
+        // It has a name of its own, too.
+        let path = if super::is_standard(path) { Path::new("/dev/stdout") } else { path };
         let path = followed(path).unwrap_or_else(|_| path.to_owned());
         if path == Path::new("/dev/null") {
             return None;
@@ -48,7 +50,8 @@ pub fn spare(outputs: &[(&str, &Path)], inputs: &[(&str, &Path)]) -> Result<()> 
             return Err(Error::Usage(format!("{other} and {output} need a file each, and {path} would be both")));
         }
     }
-    for (what, path) in inputs {
+    // What comes from standard input is replaced by nothing.
+    for (what, path) in inputs.iter().filter(|(_, path)| !super::is_standard(path)) {
         if let Some(output) = Identity::of(path).and_then(|identity| taken.get(&identity)) {
             return Err(Error::Usage(format!("{output} would replace {}, {what}", path.display())));
         }

@@ -24,6 +24,21 @@ pub fn json(print: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> 
     print_as(Escapes::Json, print)
 }
 
+/// Lets `print` write a summary: to standard error where standard output has a file of the run's.
+///
+/// # Errors
+///
+/// Those of [`print`](fn@print).
+pub fn summary(is_taken: bool, print: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+    if !is_taken {
+        return self::print(print);
+    }
+    let mut out = Printable::new(BufWriter::new(io::stderr().lock()), Escapes::Text);
+    // Where nobody listens, nothing is lost.
+    let _ = print(&mut out).and_then(|()| out.flush());
+    Ok(())
+}
+
 fn print_as(escapes: Escapes, print: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
     let mut out = Printable::new(BufWriter::new(io::stdout().lock()), escapes);
     match print(&mut out).and_then(|()| out.flush()) {

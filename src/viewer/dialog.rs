@@ -15,7 +15,7 @@ use super::task::{State, Task};
 const SHOWN: Duration = Duration::from_millis(500);
 
 /// A photo's extensions, a scene file's, and a table's.
-const PHOTOS: [&str; 8] = ["exr", "hdr", "pfm", "tif", "tiff", "png", "jpg", "jpeg"];
+const PHOTOS: [&str; 9] = ["exr", "hdr", "pfm", "tif", "tiff", "png", "jpg", "jpeg", "jxl"];
 const SCENES: [&str; 1] = ["toml"];
 const TABLES: [&str; 2] = ["csv", "txt"];
 
@@ -66,9 +66,9 @@ impl Dialog {
         dialog = match purpose {
             Purpose::OpenLook | Purpose::SaveLook => dialog.add_filter("Scene files", &SCENES),
             Purpose::OpenTable => dialog.add_filter("Tables", &TABLES),
-            Purpose::OpenPhoto | Purpose::OpenKernel | Purpose::SavePicture | Purpose::SaveGlare => {
-                dialog.add_filter("Pictures", &PHOTOS)
-            }
+            Purpose::OpenPhoto | Purpose::OpenKernel => dialog.add_filter("Pictures", &PHOTOS),
+            // JPEG XL is read alone.
+            Purpose::SavePicture | Purpose::SaveGlare => dialog.add_filter("Pictures", &PHOTOS[..8]),
         };
         dialog = dialog.add_filter("All files", &["*"]);
         let folder = if likely.is_dir() { Some(likely) } else { likely.parent() };

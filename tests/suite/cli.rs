@@ -15,6 +15,7 @@ mod luminance;
 mod measure;
 mod outputs;
 mod panics;
+mod pipes;
 mod plan;
 mod preset_veils;
 mod real_lens;

@@ -8,6 +8,7 @@ mod exr_gaps;
 mod exr_layers;
 mod exr_sampled;
 mod jpeg;
+mod kept;
 mod target;
 mod tiff;
 

@@ -36,7 +36,7 @@ pub fn paths(args: &Args, shot: &Shot) -> Result<Vec<Paths>> {
     apart(args, &paths)?;
     pictures.iter().chain(&glare).try_for_each(|names| room(names.place()))?;
     for path in paths.iter().flat_map(Paths::all) {
-        photo::check_name(path)?;
+        photo::check_name(path, args.outputs.encoding.format())?;
         if path.is_file() && !args.force {
             return Err(Error::Exists { path: path.clone() });
         }

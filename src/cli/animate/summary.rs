@@ -10,14 +10,17 @@ use crate::Result;
 use crate::look::{Look, LookLens};
 use crate::motion::Path;
 use crate::photo::Facts;
+use crate::target;
 use crate::terminal::stdout;
 
-/// A short summary to standard output.
+/// A short summary to standard output, where no file goes there.
 ///
 /// # Errors
 /// Where standard output cannot be written.
 pub fn print(args: &Args, shot: &Shot, look: &Look, log: &Log<'_>) -> Result<()> {
-    stdout::print(|out| {
+    let outputs = &args.outputs;
+    let files = [&args.output, &outputs.glare, &outputs.plot, &outputs.report].into_iter().flatten();
+    stdout::summary(files.into_iter().any(|path| target::is_standard(path)), |out| {
         about_path(out, args, shot)?;
         about_picture(out, args, log)?;
         about_lens(out, look)?;

@@ -33,6 +33,7 @@ use crate::options::ReadArgs;
 use crate::options::SceneArgs;
 use crate::options::VeilArgs;
 use crate::options::numbers::range;
+use crate::{Result, limits, target};
 
 use look::LookArgs;
 use shot::ShotArgs;
@@ -51,7 +52,7 @@ pub use run::run;
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// The photo, or several: OpenEXR, Radiance HDR, PFM, TIFF, PNG or JPEG
+    /// The photo, or several: OpenEXR, Radiance HDR, PFM, TIFF, PNG, JPEG or JPEG XL; - for standard input
     ///
     /// The frames of a shot may be named by a pattern, as shot.####.exr or shot.%04d.exr: all that are there, or those that
     /// --frames picks.
@@ -64,7 +65,8 @@ pub struct Args {
     /// name: #### or %04d becomes the frame number, the last number in the photo's name, with at least four digits (so do
     /// ## or %02d with two, and %d with as many as it has); {name} becomes the photo's name without its extension. One #
     /// alone stays what it is. The number of shot.-001.exr and shot_-1.exr is -1, whose sign counts as a digit, and that of
-    /// shot-001.exr is 1. Where --glare, --map or --report is given, OUTPUT may be
+    /// shot-001.exr is 1. A single - is standard output, of the format that --format names; the summary then goes to standard
+    /// error, and --glare or --report may be - in its place. Where --glare, --map or --report is given, OUTPUT may be
     /// left out.
     #[arg(short, long, required_unless_present_any = ["glare", "map", "report"])]
     output: Option<PathBuf>,
@@ -125,6 +127,7 @@ Examples:
   vglare apply night.exr --map veil.png --veil cie --fov 50 --lens none --luminance 250
   vglare apply night.exr -o veiled.exr --budget 20 --verify full
   vglare apply night.exr --glare glare.exr --depth half
+  vglare apply - -o - --format png < night.exr > night.png
   vglare apply shot.*.exr -o veiled/
   vglare apply shot.*.exr -o 'veiled.####.exr' --glare 'glare.####.exr' --report report.json
   vglare apply shot.*.exr -o 'previews/{name}.png' --keep-going --quiet
@@ -144,6 +147,12 @@ impl Args {
     /// started them has.
     fn overwrites(&self) -> bool {
         self.force || self.sequence.resume || self.sequence.part.is_some()
+    }
+
+    /// Whether one of the files goes to standard output.
+    fn takes_stdout(&self) -> bool {
+        let OutputArgs { glare, map, report, .. } = &self.output_options;
+        [&self.output, glare, map, report].into_iter().flatten().any(|path| target::is_standard(path))
     }
 
     /// The look that the files and options give.

@@ -7,6 +7,7 @@ use super::inputs::Inputs;
 use super::names::Names;
 use super::{Args, OutputArgs};
 use crate::chart::Kind;
+use crate::cli::encoding::EncodingArgs;
 use crate::photo::{self, Photo, WriteOptions};
 use crate::shot::Frames;
 use crate::target::{self, Identity};
@@ -48,11 +49,6 @@ impl Paths {
         Self { input: args.photos()[0].clone(), output: args.output.clone(), glare: glare.clone(), map: map.clone() }
     }
 
-    /// The pictures that the photo becomes.
-    fn pictures(&self) -> impl Iterator<Item = &PathBuf> {
-        self.output.iter().chain(&self.glare)
-    }
-
     /// All files that the photo becomes, each with the option that names it.
     fn options(&self) -> impl Iterator<Item = (&'static str, &PathBuf)> {
         let all = [(PICTURE, &self.output), ("--glare", &self.glare), ("--map", &self.map)];
@@ -90,12 +86,14 @@ impl Paths {
 
 /// How the picture is written.
 pub fn picture_options(args: &Args) -> WriteOptions {
-    args.output_options.encoding.picture(args.overwrites())
+    let OutputArgs { encoding, glare, .. } = &args.output_options;
+    EncodingArgs::beside(encoding.picture(args.overwrites()), args.output.as_deref(), glare.as_deref())
 }
 
 /// How the glare is written.
 pub fn glare_options(args: &Args, path: &Path) -> WriteOptions {
-    args.output_options.encoding.glare(path, args.output.is_some(), args.overwrites())
+    let options = args.output_options.encoding.glare(path, args.output.is_some(), args.overwrites());
+    EncodingArgs::beside(options, Some(path), args.output.as_deref())
 }
 
 /// What is to be done: photos with their outputs.
@@ -130,7 +128,7 @@ pub fn of(args: &Args, inputs: Inputs, overwrites: bool) -> Result<Work> {
     let names = |given: Option<&Path>, option: &str| {
         let named = |given: &Path| match Names::new(given) {
             Some(names) => Ok(names),
-            None if several => folder(given, option),
+            None if several && !target::is_standard(given) => folder(given, option),
             None => Ok(Names::File(given.to_owned())),
         };
         given.map(named).transpose()
@@ -146,6 +144,10 @@ pub fn of(args: &Args, inputs: Inputs, overwrites: bool) -> Result<Work> {
         apart(args, std::slice::from_ref(&paths))?;
         return Ok(Work::Single(paths));
     }
+    let given = all().filter_map(|names| if let Names::File(path) = names { Some(path) } else { None });
+    if args.photos().iter().chain(given).chain(&args.output_options.report).any(|path| target::is_standard(path)) {
+        return Err(Error::Usage("- is for one photo: it neither has a name nor holds several".into()));
+    }
     let frame = |input: &PathBuf| {
         let of = |names: &Option<Names>| names.as_ref().map(|names| names.of(input)).transpose();
         Ok(Paths { input: input.clone(), output: of(&pictures)?, glare: of(&glare)?, map: of(&maps)? })
@@ -154,7 +156,9 @@ pub fn of(args: &Args, inputs: Inputs, overwrites: bool) -> Result<Work> {
     apart(args, &frames)?;
     all().try_for_each(|names| room(names.place()))?;
     for frame in &frames {
-        frame.pictures().try_for_each(|path| photo::check_name(path))?;
+        let picture = frame.output.iter().map(|path| (path, picture_options(args)));
+        let glare = frame.glare.iter().map(|path| (path, glare_options(args, path)));
+        picture.chain(glare).try_for_each(|(path, options)| photo::check_name(path, options.format))?;
         frame.map.iter().try_for_each(|path| Kind::of(path).map(drop))?;
         if let Some(path) = frame.files().find(|path| path.is_file() && !overwrites) {
             return Err(Error::Exists { path: path.clone() });
@@ -218,6 +222,9 @@ fn apart(args: &Args, frames: &[Paths]) -> Result<()> {
     let maker = |path: &Path| Identity::of(path).and_then(|file| makers.get(&file).copied());
     for (index, frame) in frames.iter().enumerate() {
         let this = frame.input.display();
+        if target::is_standard(&frame.input) {
+            continue;
+        }
         match maker(&frame.input) {
             Some(Some((maker, _))) if maker != index => {
                 return Err(Error::Usage(format!("the output of {} would replace {this}, a photo too", input(maker))));

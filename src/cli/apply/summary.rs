@@ -15,13 +15,13 @@ use crate::photo::Facts;
 use crate::scene::Found;
 use crate::terminal::{stderr, stdout};
 
-/// Warnings to standard error; unless quiet, a short summary to standard output.
+/// Warnings to standard error; unless quiet, a short summary to standard output, where no file goes there.
 pub fn print(job: &Job<'_, Done<'_>>) -> Result<()> {
     stderr::warn(&job.work.warnings);
     if job.args.quiet {
         return Ok(());
     }
-    stdout::print(|out| {
+    stdout::summary(job.args.takes_stdout(), |out| {
         about_photo(out, job)?;
         about_unit(out, &job.work)?;
         about_clipped(out, &job.work.scene)?;

@@ -21,7 +21,7 @@ use crate::terminal::stdout;
 /// numbers mean, in cd/m² too where the file names that, and what it spans.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A photo, in place of the renderer
+    /// A photo, in place of the renderer; - for standard input
     #[arg(value_name = "PHOTO", conflicts_with = "precision")]
     photo: Option<PathBuf>,
 

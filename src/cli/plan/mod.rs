@@ -33,7 +33,7 @@ use crate::{Result, photo};
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// The photo: OpenEXR, Radiance HDR, PFM, TIFF, PNG or JPEG
+    /// The photo: OpenEXR, Radiance HDR, PFM, TIFF, PNG, JPEG or JPEG XL; - for standard input
     photo: PathBuf,
 
     /// Plan for a picture of this size in pixels, with the photo's lights where they are [default: the photo's]

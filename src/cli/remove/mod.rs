@@ -34,7 +34,7 @@ use report::{Luminance, Report};
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// The photo: OpenEXR, Radiance HDR, PFM, TIFF, PNG or JPEG
+    /// The photo: OpenEXR, Radiance HDR, PFM, TIFF, PNG, JPEG or JPEG XL; - for standard input
     #[arg(value_name = "INPUT")]
     input: PathBuf,
 
@@ -113,6 +113,11 @@ impl Args {
         all.into_iter().filter_map(|(option, path)| Some((option, path.as_deref()?))).collect()
     }
 
+    /// Whether one of them goes to standard output.
+    fn takes_stdout(&self) -> bool {
+        self.outputs().into_iter().any(|(_, path)| target::is_standard(path))
+    }
+
     fn removing(&self) -> Removing {
         Removing {
             tolerance: self.tolerance,
@@ -126,7 +131,7 @@ impl Args {
     /// Everything that could keep the results from being written, before the work begins.
     fn check(&self, photo: &Photo) -> Result<()> {
         if let Some(path) = &self.output {
-            photo::check_target(path, photo, &self.encoding.picture(self.force))?;
+            photo::check_target(path, photo, &self.picture_options())?;
         }
         if let Some(path) = &self.mask {
             if self.clip.is_none() && !photo.source.display_referred {
@@ -139,8 +144,13 @@ impl Args {
         self.report.as_deref().map_or(Ok(()), |path| target::check(path, self.force))
     }
 
+    fn picture_options(&self) -> WriteOptions {
+        EncodingArgs::beside(self.encoding.picture(self.force), self.output.as_deref(), self.mask.as_deref())
+    }
+
     fn mask_options(&self) -> WriteOptions {
-        WriteOptions { tone_map: Some(ToneMap::None), overwrite: self.force, ..WriteOptions::default() }
+        let options = WriteOptions { tone_map: Some(ToneMap::None), ..self.encoding.other(self.force) };
+        EncodingArgs::beside(options, self.mask.as_deref(), self.output.as_deref())
     }
 
     /// Writes the picture and the mask; what a person ought to know of it.
@@ -151,7 +161,7 @@ impl Args {
             photo::write(path, &mask, &self.mask_options())?;
         }
         if let Some(path) = &self.output {
-            let options = self.encoding.picture(self.force);
+            let options = self.picture_options();
             photo::write(path, &removed.photo, &options)?;
             removed.warnings.extend(photo::lost(path, &removed.photo, &options));
         }

@@ -10,14 +10,14 @@ use crate::job::{Amplification, Negative, Removal, VeilSeen};
 use crate::photo::Facts;
 use crate::terminal::{stderr, stdout};
 
-/// Warnings to standard error; unless quiet, a short summary to standard output.
+/// Warnings to standard error; unless quiet, a short summary to standard output, where no file goes there.
 pub fn print(report: &Report<'_>) -> Result<()> {
     let Report { args, facts: Facts { frame, format, depth, .. }, removed, stages, luminance } = report;
     stderr::warn(&removed.warnings);
     if args.quiet {
         return Ok(());
     }
-    stdout::print(|out| {
+    stdout::summary(args.takes_stdout(), |out| {
         writeln!(out, "photo    {}: {} x {}, {format}, {depth}", args.input.display(), frame.width, frame.height)?;
         match &removed.removal {
             Some(removal) => about(out, removal)?,

@@ -78,6 +78,11 @@ pub(in super::super) fn tell_lab(icc: &mut [u8]) {
     }
 }
 
+/// Whether a profile is for grey.
+pub(in super::super) fn is_grey(icc: &[u8]) -> bool {
+    icc.get(16..20) == Some(b"GRAY")
+}
+
 /// The colour space that a profile is for, in words.
 pub fn space(icc: &[u8]) -> String {
     match icc.get(16..20).map_or("", |name| std::str::from_utf8(name).unwrap_or("")).trim() {

@@ -15,14 +15,16 @@ use super::transfer::Curve;
 use super::{ReadOptions, Reason};
 use tables::Tables;
 
-pub(super) use head::{LARGEST, tell_lab};
-pub(super) use written::srgb_profile;
+pub(super) use head::{LARGEST, is_grey, tell_lab};
+pub(super) use written::{profile_of, srgb_profile};
 
 /// The way from an ICC profile to linear light.
 pub(super) struct Profile {
     way: Way,
     /// What the profile calls itself.
     name: Option<String>,
+    /// As it stands in the file.
+    bytes: Vec<u8>,
 }
 
 pub(super) enum Way {
@@ -85,11 +87,16 @@ impl Profile {
             Some(tables) => Way::Tables(tables?),
             None => Way::Shaper(Box::new(shape::shaper(&profile, name.as_deref())?)),
         };
-        Ok(Some(Self { way, name }))
+        Ok(Some(Self { way, name, bytes: icc.to_vec() }))
     }
 
     pub fn way(&self) -> &Way {
         &self.way
+    }
+
+    /// The profile itself.
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
     }
 
     /// The colour space, where its primaries are not Rec.709's.

@@ -26,6 +26,7 @@ mod check;
 mod codes;
 mod decode;
 mod gain;
+mod metadata;
 mod planes;
 mod recipe;
 mod tags;
@@ -39,8 +40,7 @@ use image::{ExtendedColorType, ImageEncoder};
 
 use super::decode::{Encoding, Raster};
 use super::display::{self, Look};
-use super::icc;
-use super::{Alpha, Format, Photo, ReadOptions, Reason};
+use super::{Alpha, Format, Photo, ReadOptions, Reason, icc, native};
 use decode::{Decoded, Samples};
 use walk::Walk;
 
@@ -61,6 +61,7 @@ pub(super) fn read(mut reader: impl BufRead + Seek, options: &ReadOptions) -> Re
     let mut photo = into_photo(decoded, &walk, &encoding, shown.orientation)?;
     photo.source.notes.append(&mut notes);
     photo.source.camera = shown.camera;
+    metadata::read(&walk, shown.orientation).attach(&mut photo);
     gain::apply(&walk, shown.orientation, encoding.to_rec709(), &mut photo);
     Ok(photo)
 }
@@ -83,10 +84,29 @@ fn into_photo(decoded: Decoded, walk: &Walk, encoding: &Encoding, turn: Orientat
     }
 }
 
-pub(super) fn write(writer: impl Write, photo: &Photo, look: Look) -> Result<(), Reason> {
-    let samples = display::encode::<u8>(photo, look, false)?;
-    let colour = if samples.channels == 1 { ExtendedColorType::L8 } else { ExtendedColorType::Rgb8 };
-    let mut encoder = JpegEncoder::new_with_quality(writer, QUALITY);
-    encoder.set_icc_profile(icc::srgb_profile(samples.channels == 1)?.to_vec())?;
-    Ok(encoder.write_image(&samples.data, photo.width(), photo.height(), colour)?)
+pub(super) fn write(mut writer: impl Write, photo: &Photo, look: Look) -> Result<(), Reason> {
+    let native = native::of(photo, Format::Jpeg);
+    let samples = display::encode::<u8>(photo, look, false, native)?;
+    let grey = samples.channels == 1;
+    let colour = if grey { ExtendedColorType::L8 } else { ExtendedColorType::Rgb8 };
+    let profile = match native.and_then(|native| native.profile(grey)) {
+        Some(profile) => profile.into_owned(),
+        None => icc::srgb_profile(grey)?.to_vec(),
+    };
+    let mut file = Vec::new();
+    let mut encoder = JpegEncoder::new_with_quality(&mut file, QUALITY);
+    encoder.set_icc_profile(profile)?;
+    let beside = super::metadata::of(photo);
+    if let Some(exif) = beside.and_then(|metadata| metadata.exif_segment(native.is_none())) {
+        encoder.set_exif_metadata(exif)?;
+    }
+    if let Some(density) = beside.and_then(|metadata| metadata.resolution).and_then(metadata::density_of) {
+        encoder.set_pixel_density(density);
+    }
+    encoder.write_image(&samples.data, photo.width(), photo.height(), colour)?;
+    // What the encoder does not know of goes behind its first segment, which has to be JFIF's.
+    let (head, rest) = file.split_at(2 + 2 + usize::from(u16::from_be_bytes([file[4], file[5]])));
+    writer.write_all(head)?;
+    writer.write_all(&beside.map_or(Vec::new(), |metadata| metadata.segments()))?;
+    Ok(writer.write_all(rest)?)
 }

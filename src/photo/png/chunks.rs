@@ -2,11 +2,15 @@
 
 use std::io::{Read, Seek, SeekFrom};
 
-use super::super::Reason;
 use super::super::read::check_size;
+use super::super::{Reason, zeroed};
+use super::texts::Chunk;
 
 /// The most bytes that one byte of zlib's can become: zlib.net/zlib_tech.html, "Maximum Compression Factor".
 const EXPANSION: u64 = 1032;
+
+/// The most bytes of text that are kept.
+const LARGEST_TEXTS: u64 = 16 << 20;
 
 /// What the chunks amount to; sizes are those of what is there, whatever the chunks say.
 pub struct Chunks {
@@ -18,6 +22,8 @@ pub struct Chunks {
     picture: u64,
     /// Bytes of the ICC profile's chunk, 0 without one.
     pub profile: usize,
+    /// Those of text, as far as there are not too many.
+    pub texts: Vec<Chunk>,
 }
 
 impl Chunks {
@@ -36,7 +42,8 @@ impl Chunks {
         }
         let samples = [1, 0, 3, 1, 2, 0, 4].get(usize::from(head[25])).copied().unwrap_or(0);
         let (width, height, bits) = (number(16), number(20), samples * u64::from(head[24]));
-        let mut chunks = Self { width, height, bits, picture: 0, profile: 0 };
+        let mut chunks = Self { width, height, bits, picture: 0, profile: 0, texts: Vec::new() };
+        let mut left = LARGEST_TEXTS;
         let mut at = head.len() as u64;
         while at + 8 <= length {
             let mut head = [0; 8];
@@ -46,6 +53,12 @@ impl Chunks {
             match &head[4..] {
                 b"IDAT" => chunks.picture += holds,
                 b"iCCP" => chunks.profile = holds as usize,
+                b"tEXt" | b"zTXt" | b"iTXt" if holds == says && says <= left => {
+                    left -= says;
+                    chunks.texts.extend(text(&mut reader, head)?);
+                    // As far as if it had been passed over.
+                    reader.seek(SeekFrom::Start(at + 8))?;
+                }
                 b"IEND" => break,
                 _ => {}
             }
@@ -82,4 +95,17 @@ impl Chunks {
         }
         Ok(())
     }
+}
+
+/// A chunk behind its length and name; none where its checksum is wrong, or cut off.
+fn text(reader: &mut impl Read, head: [u8; 8]) -> Result<Option<Chunk>, Reason> {
+    let [l3, l2, l1, l0, name @ ..] = head;
+    let mut content = zeroed(u32::from_be_bytes([l3, l2, l1, l0]) as usize)?;
+    reader.read_exact(&mut content)?;
+    let mut sum = [0; 4];
+    let mut crc = flate2::Crc::new();
+    crc.update(&name);
+    crc.update(&content);
+    let sound = reader.read_exact(&mut sum).is_ok() && u32::from_be_bytes(sum) == crc.sum();
+    Ok(sound.then_some((name, content)))
 }

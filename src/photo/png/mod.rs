@@ -5,19 +5,23 @@
 //! animation the still picture is read.
 
 mod chunks;
+mod texts;
 
 use std::io::{BufRead, Seek, Write};
+use std::sync::Arc;
 
 use glam::DVec2;
 use image::metadata::Orientation;
+use png::chunk::ChunkType;
 use png::{BitDepth, CodingIndependentCodePoints, ColorType, Info, SrgbRenderingIntent, Transformations};
 
 use super::camera::Camera;
 use super::decode::{Encoding, Raster};
 use super::display::{self, Code, Look, Samples};
+use super::metadata::{self, Metadata, Resolution, Unit};
 use super::read::check_size;
 use super::transfer::Curve;
-use super::{Alpha, Format, Photo, Primaries, ReadOptions, Reason, cicp, icc, zeroed};
+use super::{Alpha, Format, Photo, Primaries, ReadOptions, Reason, cicp, icc, native, zeroed};
 use chunks::Chunks;
 
 /// What the chunks around the picture may take besides a profile: a palette, EXIF, a row.
@@ -51,34 +55,61 @@ pub(super) fn read(mut reader: impl BufRead + Seek, options: &ReadOptions) -> Re
     let encoding = encoding(info, channels < 3, options, &mut notes);
     let size = reader.output_buffer_size().ok_or("the picture does not fit into memory")?;
     let alpha = Alpha::Straight;
-    let (turn, camera);
+    let (turn, camera, mut beside);
     let mut photo = if depth == BitDepth::Sixteen {
         let mut samples = zeroed::<u16>(size / 2)?;
         reader.next_frame(bytemuck::cast_slice_mut(&mut samples))?;
-        (turn, camera) = exif(&mut reader);
+        (turn, camera, beside) = exif(&mut reader);
         samples.iter_mut().for_each(|code| *code = u16::from_be(*code));
         Raster { width, height, channels, samples, planar: false }.into_photo(Format::Png, alpha, &encoding, turn)?
     } else {
         let mut samples = zeroed::<u8>(size)?;
         reader.next_frame(&mut samples)?;
-        (turn, camera) = exif(&mut reader);
+        (turn, camera, beside) = exif(&mut reader);
         Raster { width, height, channels, samples, planar: false }.into_photo(Format::Png, alpha, &encoding, turn)?
     };
     photo.source.camera = camera;
     photo.source.notes.append(&mut notes);
+    let info = reader.info();
+    if let Some(native) = photo.source.native.as_mut().and_then(Arc::get_mut) {
+        native.code_points = info.coding_independent_code_points.filter(|_| options.primaries.is_none()).and_then(own);
+    }
+    beside.take_resolution(info.pixel_dims.and_then(resolution), turn);
+    let (xmp, texts) = texts::split(chunks.texts);
+    if let Some(xmp) = xmp {
+        beside.take_xmp(&xmp, turn);
+    }
+    beside.texts = texts;
+    beside.attach(&mut photo);
     Ok(photo)
 }
 
 /// What Exif says, which may stand behind the picture: third edition, 5.6.
-fn exif(reader: &mut png::Reader<impl BufRead + Seek>) -> (Orientation, Option<Camera>) {
+fn exif(reader: &mut png::Reader<impl BufRead + Seek>) -> (Orientation, Option<Camera>, Metadata) {
     if reader.info().exif_metadata.is_none() && reader.info().animation_control.is_none() {
         // What is wrong behind the picture does it no harm.
         let _ = reader.finish();
     }
     let info = reader.info();
-    let Some(exif) = info.exif_metadata.as_deref() else { return (Orientation::NoTransforms, None) };
+    let mut beside = Metadata::default();
+    let Some(exif) = info.exif_metadata.as_deref() else { return (Orientation::NoTransforms, None, beside) };
     let turn = Orientation::from_exif_chunk(exif).unwrap_or(Orientation::NoTransforms);
-    (turn, Camera::of_raw_exif(exif, turn))
+    beside.take_exif(exif, turn);
+    (turn, Camera::of_raw_exif(exif, turn), beside)
+}
+
+/// The code points that decoded the samples, if any did.
+fn own(code: CodingIndependentCodePoints) -> Option<[u8; 2]> {
+    code_points(code, &mut Vec::new()).map(|_| [code.color_primaries, code.transfer_function])
+}
+
+/// PNG, third edition, 11.3.4.3.
+fn resolution(dimensions: png::PixelDimensions) -> Option<Resolution> {
+    let unit = match dimensions.unit {
+        png::Unit::Meter => Unit::Metre,
+        png::Unit::Unspecified => Unit::None,
+    };
+    Resolution::new([dimensions.xppu.into(), dimensions.yppu.into()], unit)
 }
 
 fn encoding(info: &Info<'_>, grey: bool, options: &ReadOptions, notes: &mut Vec<String>) -> Encoding {
@@ -128,20 +159,45 @@ fn code_points(code: CodingIndependentCodePoints, notes: &mut Vec<String>) -> Op
 }
 
 pub(super) fn write<T: Code>(writer: impl Write, photo: &Photo, look: Look) -> Result<(), Reason> {
-    let Samples { channels, mut data } = display::encode::<T>(photo, look, display::has_straight_alpha(photo))?;
+    let native = native::of(photo, Format::Png);
+    let Samples { channels, mut data } = display::encode::<T>(photo, look, display::has_straight_alpha(photo), native)?;
     let colours = [ColorType::Grayscale, ColorType::GrayscaleAlpha, ColorType::Rgb, ColorType::Rgba];
-    let mut encoder = png::Encoder::new(writer, photo.width(), photo.height());
+    let beside = metadata::of(photo);
+    let mut info = Info::with_size(photo.width(), photo.height());
+    info.icc_profile = native.and_then(|native| native.profile(channels < 3));
+    info.exif_metadata = beside.and_then(|metadata| metadata.exif_of(native.is_none())).map(Into::into);
+    info.pixel_dims = beside.and_then(|metadata| metadata.resolution).map(dimensions);
+    let mut encoder = png::Encoder::with_info(writer, info)?;
     encoder.set_color(colours[channels - 1]);
     encoder.set_depth(if size_of::<T>() == 2 { BitDepth::Sixteen } else { BitDepth::Eight });
     // A quarter of the default's time for half as much again of its size.
     encoder.set_compression(png::Compression::Fast);
-    encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
+    if native.is_none() {
+        encoder.set_source_srgb(SrgbRenderingIntent::RelativeColorimetric);
+    }
     let mut writer = encoder.write_header()?;
+    if let Some([primaries, transfer]) = native.and_then(|native| native.code_points) {
+        // RGB, full range.
+        writer.write_chunk(ChunkType(*b"cICP"), &[primaries, transfer, 0, 1])?;
+    }
+    if let Some(metadata) = beside {
+        let xmp = metadata.xmp.iter().map(|xmp| (*b"iTXt", texts::xmp_chunk(xmp)));
+        for (name, content) in xmp.chain(metadata.texts.iter().cloned()) {
+            writer.write_chunk(ChunkType(name), &content)?;
+        }
+    }
     if size_of::<T>() == 2 {
         bytemuck::cast_slice_mut::<_, u16>(&mut data).iter_mut().for_each(|code| *code = code.to_be());
     }
     writer.write_image_data(bytemuck::cast_slice(&data))?;
     Ok(writer.finish()?)
+}
+
+/// PNG, third edition, 11.3.4.3: to a metre, or of no unit.
+fn dimensions(resolution: Resolution) -> png::PixelDimensions {
+    let [xppu, yppu] = resolution.in_unit(Unit::Metre).map(|pixels| pixels.round().max(1.0) as u32);
+    let unit = if resolution.unit == Unit::None { png::Unit::Unspecified } else { png::Unit::Meter };
+    png::PixelDimensions { xppu, yppu, unit }
 }
 
 #[cfg(test)]

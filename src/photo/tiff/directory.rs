@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::io::{Read, Seek, SeekFrom};
 
+use super::super::metadata::{self, size_of_kind};
 use super::super::{Reason, zeroed};
 
 /// The numbers of the tags that are looked at: TIFF 6.0, its supplements, and the registered ones of others.
@@ -15,6 +16,7 @@ pub(super) mod tag {
     pub const COMPRESSION: u16 = 259;
     pub const PHOTOMETRIC: u16 = 262;
     pub const FILL_ORDER: u16 = 266;
+    pub const MAKE: u16 = 271;
     pub const STRIP_OFFSETS: u16 = 273;
     pub const ORIENTATION: u16 = 274;
     pub const SAMPLES_PER_PIXEL: u16 = 277;
@@ -191,20 +193,22 @@ impl<R: Read + Seek> File<R> {
         Ok(Some(self.values(entry, usize::MAX)?.1))
     }
 
+    /// The entries that are `wanted`, those of them that can be read, of at most `most` bytes each.
+    pub fn entries(&mut self, directory: &Directory, wanted: fn(u16) -> bool, most: u64) -> Vec<metadata::Entry> {
+        let wanted =
+            directory.entries.iter().filter(|(tag, _)| wanted(**tag) && self.size_of(directory, **tag) <= most);
+        let mut wanted: Vec<_> = wanted.collect();
+        wanted.sort_by_key(|(tag, _)| **tag);
+        let read = |(&tag, entry): (&u16, &Entry)| {
+            let (_, values) = self.values(entry, usize::MAX).ok()?;
+            metadata::Entry::new(tag, entry.kind, values, self.big_endian)
+        };
+        wanted.into_iter().filter_map(read).collect()
+    }
+
     /// The number that up to eight bytes are in the file's order.
     fn number_in(&self, bytes: &[u8]) -> u64 {
         let add = |number: u64, &byte: &u8| number << 8 | u64::from(byte);
         if self.big_endian { bytes.iter().fold(0, add) } else { bytes.iter().rev().fold(0, add) }
-    }
-}
-
-/// Bytes of one value of a kind: TIFF 6.0 page 15, IFD of the first supplement, the 64-bit ones of BigTIFF.
-fn size_of_kind(kind: u16) -> Option<usize> {
-    match kind {
-        1 | 2 | 6 | 7 => Some(1),
-        3 | 8 => Some(2),
-        4 | 9 | 11 | 13 => Some(4),
-        5 | 10 | 12 | 16..=18 => Some(8),
-        _ => None,
     }
 }

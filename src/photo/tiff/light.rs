@@ -6,7 +6,7 @@ use half::f16;
 use image::metadata::Orientation;
 use rayon::prelude::*;
 
-use super::super::decode::{Encoding, Raster, Sample};
+use super::super::decode::{Encoding, Raster, Sample, divide_by_alpha};
 use super::super::icc;
 use super::super::transfer::Curve;
 use super::super::{Alpha, Depth, Format, Photo, ReadOptions, Reason};
@@ -153,9 +153,14 @@ impl<T: Sample> Decoded<T> {
             Some(curve) => Encoding::new(curve, None),
             None => meaning.encoding(layout, self.raster.channels < 3),
         };
+        // Colours that were converted have no codes of their own.
+        let converted = matches!(layout.colour, Colour::Cmyk | Colour::CieLab | Colour::IccLab);
         let alpha = if layout.alpha == Alpha::None { Alpha::None } else { Alpha::Straight };
         let mut photo = self.raster.into_photo(Format::Tiff, alpha, &encoding, meaning.orientation)?;
         photo.source.depth = depth(layout);
+        if converted {
+            photo.source.native = None;
+        }
         photo.source.display_referred = photo.source.depth.is_display();
         photo.source.notes = meaning.notes;
         Ok(photo)
@@ -281,12 +286,6 @@ fn by_values(codes: Codes, layout: &Layout, mut meaning: Meaning) -> Result<Phot
         }
     }
     Ok(photo)
-}
-
-/// The colour of which a pixel holds as much as it covers; none where it covers nothing, and none beyond white.
-fn divide_by_alpha(pixel: &mut [f32]) {
-    let Some((&mut alpha, colours)) = pixel.split_last_mut() else { return };
-    colours.iter_mut().for_each(|c| *c = if alpha > 0.0 { (*c / alpha).min(1.0) } else { 0.0 });
 }
 
 /// The samples as numbers of which 1 is the largest integer; floats as they are.

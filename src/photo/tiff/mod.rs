@@ -9,6 +9,7 @@
 //! | `samples` | its bits, bytes and predictors |
 //! | `pieces` | reads all strips or tiles into one picture |
 //! | `light`, `colour` | from samples to a photo |
+//! | `metadata` | what stands beside the picture |
 //! | `write` | writes, through the `tiff` crate |
 //!
 //! That crate's decoder is not used: it reads no picture whose directory holds anything that it does not know, takes
@@ -23,6 +24,7 @@ mod directory;
 mod fax;
 mod layout;
 mod light;
+mod metadata;
 mod page;
 mod picture;
 mod pieces;
@@ -55,8 +57,10 @@ pub(super) fn read(reader: impl Read + Seek, options: &ReadOptions) -> Result<Ph
     };
     let codes = pieces::read(&mut file, &layout, tables.as_deref())?;
     let turn = meaning.orientation();
+    let beside = metadata::read(&mut file, &page.directory, turn);
     let mut photo = light::into_photo(codes, &layout, meaning)?;
     photo.source.camera = camera.map(|camera| if is_quarter_turn(turn) { camera.turned() } else { camera });
+    beside.attach(&mut photo);
     photo.source.picture = page.name;
     page.notes.append(&mut photo.source.notes);
     photo.source.notes = page.notes;

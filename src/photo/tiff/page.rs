@@ -4,6 +4,7 @@ use std::collections::HashSet;
 use std::io::{Read, Seek};
 
 use super::super::Reason;
+use super::super::foreign::RAW;
 use super::directory::{Directory, File, tag};
 use super::layout::{CFA, LINEAR_RAW};
 
@@ -21,7 +22,7 @@ const MOST_SUB_PICTURES: usize = 64;
 
 pub(super) fn choose<R: Read + Seek>(file: &mut File<R>) -> Result<Page, Reason> {
     if file.canon_raw {
-        return Err(raw("Canon CR2"));
+        return Err(refusal("Canon CR2"));
     }
     let (mut pages, broken) = chain(file)?;
     let mut notes = Vec::new();
@@ -36,7 +37,7 @@ pub(super) fn choose<R: Read + Seek>(file: &mut File<R>) -> Result<Page, Reason>
             notes.push("the list of the file's pictures breaks off: there may be more than are told here".to_owned());
         }
         let page = pages.swap_remove(index);
-        check_no_raw(file, &page)?;
+        check_no_raw(file, &page, &page)?;
         let several = full.len() > 1 || index > 0;
         if full.len() > 1 {
             let (others, are) = if full.len() == 2 { ("the other", "is") } else { ("the others", "are") };
@@ -47,7 +48,7 @@ pub(super) fn choose<R: Read + Seek>(file: &mut File<R>) -> Result<Page, Reason>
     for page in &pages {
         for sub in sub_pictures(file, page)? {
             if is_full(file, &sub)? {
-                check_no_raw(file, &sub)?;
+                check_no_raw(file, &sub, page)?;
                 return Ok(Page { directory: sub, name: Some("sub-picture of page 1".into()), notes });
             }
         }
@@ -98,18 +99,25 @@ fn sub_pictures<R: Read + Seek>(file: &mut File<R>, page: &Directory) -> Result<
     offsets.into_iter().map(|at| file.directory(at)).collect()
 }
 
-/// An error if the picture is raw data, or the rendering that a camera puts beside them.
-fn check_no_raw<R: Read + Seek>(file: &mut File<R>, page: &Directory) -> Result<(), Reason> {
-    let kind = if page.has(tag::DNG_VERSION) { "DNG" } else { "the pattern of its sensor" };
+/// An error if the picture is raw data, or the rendering that a camera puts beside them; `main` is the directory that says whose.
+fn check_no_raw<R: Read + Seek>(file: &mut File<R>, page: &Directory, main: &Directory) -> Result<(), Reason> {
+    let make = file.raw(main, tag::MAKE).ok().flatten().unwrap_or_default().to_ascii_uppercase();
+    let kind = match &make[..] {
+        _ if main.has(tag::DNG_VERSION) || page.has(tag::DNG_VERSION) => "DNG",
+        [b'N', b'I', b'K', b'O', b'N', ..] => "Nikon NEF",
+        [b'S', b'O', b'N', b'Y', ..] => "Sony ARW",
+        [b'P', b'E', b'N', b'T', b'A', b'X', ..] => "Pentax PEF",
+        _ => "the pattern of its sensor",
+    };
     let subs = sub_pictures(file, page).unwrap_or_default();
     for picture in std::iter::once(page).chain(&subs) {
         if matches!(file.number(picture, tag::PHOTOMETRIC)?, Some(CFA | LINEAR_RAW)) {
-            return Err(raw(kind));
+            return Err(refusal(kind));
         }
     }
     Ok(())
 }
 
-fn raw(kind: &str) -> Reason {
-    format!("it holds a camera's raw data ({kind}); develop it to a TIFF or OpenEXR picture first").into()
+fn refusal(kind: &str) -> Reason {
+    format!("it holds a camera's raw data ({kind}), which vglare does not read: {RAW}").into()
 }

@@ -9,7 +9,8 @@ use tiff::tags::{ExtraSamples, Tag};
 use super::super::display::{self, Code, Look};
 use super::super::icc;
 use super::super::pfm::rec709;
-use super::super::{Alpha, Depth, Photo, Reason, zeroed};
+use super::super::{Alpha, Depth, Format, Photo, Reason, metadata, native, zeroed};
+use super::metadata::{exif_of, write_beside, write_within};
 
 pub(in super::super) fn write(
     writer: impl Write + Seek,
@@ -42,7 +43,7 @@ fn write_kind<W: Write + Seek, K: TiffKind>(
 }
 
 fn codes<T: Code>(photo: &Photo, look: Look, alpha: bool) -> Result<(usize, Vec<T>), Reason> {
-    let samples = display::encode(photo, look, alpha)?;
+    let samples = display::encode(photo, look, alpha, native::of(photo, Format::Tiff))?;
     Ok((samples.channels, samples.data))
 }
 
@@ -79,7 +80,15 @@ where
         Alpha::Premultiplied => ExtraSamples::AssociatedAlpha,
         _ => ExtraSamples::UnassociatedAlpha,
     };
-    let profile = display.then(|| icc::srgb_profile(*channels < 3)).transpose()?;
+    let grey = *channels < 3;
+    let native = native::of(photo, Format::Tiff).and_then(|native| native.profile(grey)).filter(|_| display);
+    let profile = match &native {
+        Some(profile) => Some(&**profile),
+        None => display.then(|| icc::srgb_profile(grey)).transpose()?,
+    };
+    let beside = metadata::of(photo);
+    let exif = beside.and_then(|metadata| exif_of(metadata, display && native.is_none()));
+    let led = exif.as_ref().map_or(Ok(Vec::new()), |exif| write_beside(&mut encoder, exif))?;
     let extra = if channels.is_multiple_of(2) { &[alpha][..] } else { &[] };
     macro_rules! write_as {
         ($colour:ty) => {{
@@ -88,10 +97,16 @@ where
             if let Some(profile) = profile {
                 image.encoder().write_tag(Tag::IccProfile, profile)?;
             }
+            if let Some(metadata) = beside {
+                write_within(image.encoder(), metadata, exif.as_ref())?;
+            }
+            for (tag, offset) in led {
+                image.encoder().write_tag(Tag::from_u16_exhaustive(tag), offset)?;
+            }
             image.write_data(samples)?;
         }};
     }
-    if *channels < 3 {
+    if grey {
         write_as!(Grey)
     } else {
         write_as!(Rgb)

@@ -201,13 +201,24 @@ fn info_tells_of_both_backends() {
 }
 
 #[test]
-fn colours_that_become_srgb_are_told() {
+fn colours_that_are_clipped_are_told() {
     let place = Workplace::new();
     let input = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/inputs/png-icc-gamma18.png");
-    let ran = place.vglare(&["apply", input, "-o", "out.png", "--strength", "0", "--report", "r.json"]).succeeded();
-    assert!(ran.stderr().contains("ProPhoto RGB, are written as sRGB"), "{}", ran.stderr());
+    let ran = place.vglare(&["apply", input, "-o", "out.hdr", "--strength", "0", "--report", "r.json"]).succeeded();
+    assert!(ran.stderr().contains("ProPhoto RGB, are written as Rec. 709"), "{}", ran.stderr());
     let report: Value = serde_json::from_slice(&std::fs::read(place.path("r.json")).unwrap()).unwrap();
     assert!(report["warnings"][0].as_str().unwrap().contains("ProPhoto RGB"), "{}", report["warnings"]);
-    let ran = place.vglare(&["apply", input, "-o", "out.exr", "--strength", "0"]).succeeded();
-    assert!(!ran.stderr().contains("written as"), "{}", ran.stderr());
+    for name in ["out.exr", "out.png"] {
+        let ran = place.vglare(&["apply", input, "-o", name, "--strength", "0"]).succeeded();
+        assert!(!ran.stderr().contains("written as"), "{}", ran.stderr());
+    }
+    // In its own space every code is what it was.
+    let codes = |path: &std::path::Path| {
+        let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
+        let mut reader = png::Decoder::new(file).read_info().unwrap();
+        let mut codes = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut codes).unwrap();
+        codes
+    };
+    assert!(codes(std::path::Path::new(input)) == codes(&place.path("out.png")));
 }

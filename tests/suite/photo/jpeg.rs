@@ -259,9 +259,8 @@ fn other_formats_are_named() {
     for (head, name) in [
         (&b"\0\0\0\x18ftypheic\0\0\0\0mif1heic"[..], "HEIC"),
         (b"\0\0\0\x1cftypavif\0\0\0\0", "AVIF"),
-        (b"\0\0\0\x0cJXL \r\n\x87\n", "JPEG XL"),
         (b"\0\0\0\x0cjP  \r\n\x87\n", "JPEG 2000"),
-        (b"RIFF\x20\0\0\0WEBPVP8 ", "WEBP"),
+        (b"RIFF\x20\0\0\0WEBPVP8 ", "WebP"),
         (b"GIF89a\x01\0\x01\0", "GIF"),
         (b"\xff\xd8\xff\xf7\0\x0b\x08\0\x01\0\x01\x01\x01\x11\0", "JPEG-LS"),
     ] {
