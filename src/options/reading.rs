@@ -8,7 +8,7 @@ use crate::options::numbers::finite;
 use crate::photo::{Missing, Primaries, ReadOptions, WhiteLuminance};
 
 /// How photos are read.
-#[derive(Debug, Clone, Copy, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Reading")]
 pub struct ReadArgs {
     /// The primaries of the photo's numbers, whatever its file says of them: rec709, p3-d65, rec2020, adobe-rgb,
@@ -24,6 +24,15 @@ pub struct ReadArgs {
     /// lamp that leaves the picture fades, but only OpenEXR keeps it, beyond its display window [default: 0]
     #[arg(long, value_name = "F", value_parser = overscan, allow_hyphen_values = true)]
     overscan: Option<f64>,
+
+    /// The part of an OpenEXR file that the picture is in, by name or by number, from 0 on [default: see docs/photos.md]
+    #[arg(long, value_name = "NAME|NUMBER")]
+    part: Option<String>,
+
+    /// The layer of an OpenEXR file that is the picture, as beauty where its channels are beauty.R, beauty.G and beauty.B; the others stay as
+    /// they are. `vglare info` lists them. '' is the one without a name [default: see docs/photos.md]
+    #[arg(long, value_name = "NAME")]
+    layer: Option<String>,
 }
 
 /// `--missing`.
@@ -37,18 +46,19 @@ enum MissingArg {
 
 impl ReadArgs {
     /// The library's options, for a photo whose white is so many cd/m², where that is given.
-    pub fn of_white(self, white_luminance: Option<WhiteLuminance>) -> ReadOptions {
+    pub fn of_white(&self, white_luminance: Option<WhiteLuminance>) -> ReadOptions {
         ReadOptions { white_luminance, ..self.options() }
     }
 
     /// The library's options.
-    pub fn options(self) -> ReadOptions {
+    pub fn options(&self) -> ReadOptions {
         let missing = match self.missing {
             MissingArg::Refuse => Missing::Refuse,
             MissingArg::Zero => Missing::Zero,
         };
         let overscan = self.overscan.unwrap_or(0.0);
-        ReadOptions { missing, primaries: self.primaries, overscan, ..ReadOptions::default() }
+        let (part, layer) = (self.part.clone(), self.layer.clone());
+        ReadOptions { missing, primaries: self.primaries, overscan, part, layer, ..ReadOptions::default() }
     }
 }
 

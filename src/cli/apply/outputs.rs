@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::names::Names;
 use super::{Args, OutputArgs};
 use crate::chart::Kind;
-use crate::photo::{self, Photo, WriteOptions};
+use crate::photo::{self, Depth, Photo, WriteOptions};
 use crate::target::{self, Identity};
 use crate::{Error, Result};
 
@@ -117,6 +117,7 @@ pub fn work(args: &Args) -> Result<Work> {
     let is_file = |names: &Names| matches!(names, Names::File(_));
     if !several && all().all(is_file) {
         let paths = Paths::single(args);
+        holds_layers(args, paths.output.as_deref())?;
         paths.map.iter().try_for_each(|path| Kind::of(path).map(drop))?;
         apart(args, std::slice::from_ref(&paths))?;
         return Ok(Work::Single(paths));
@@ -130,6 +131,7 @@ pub fn work(args: &Args) -> Result<Work> {
     all().try_for_each(|names| room(names.place()))?;
     for frame in &frames {
         frame.pictures().try_for_each(|path| photo::check_name(path))?;
+        holds_layers(args, frame.output.as_deref())?;
         frame.map.iter().try_for_each(|path| Kind::of(path).map(drop))?;
         if let Some(path) = frame.files().find(|path| path.is_file() && !args.force) {
             return Err(Error::Exists { path: path.clone() });
@@ -140,6 +142,16 @@ pub fn work(args: &Args) -> Result<Work> {
     }
     let place = all().next().map(|names| names.place().to_owned());
     Ok(Work::Sequence(Sequence { frames, place }))
+}
+
+/// Whether the picture's file can hold the layers that are asked for.
+fn holds_layers(args: &Args, output: Option<&Path>) -> Result<()> {
+    let Some(path) = output.filter(|_| args.output_options.layers) else { return Ok(()) };
+    // No other format knows half floats.
+    if photo::holds(path, Depth::Half) {
+        return Ok(());
+    }
+    Err(Error::Usage(format!("--layers: {} is no .exr, and other formats hold no layers", path.display())))
 }
 
 /// A name without fields that many outputs are to share, as the folder that it can only be.

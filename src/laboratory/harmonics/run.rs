@@ -110,7 +110,7 @@ fn check_targets(args: &Args, output: &Photo) -> Result<()> {
 }
 
 fn write_options(args: &Args) -> WriteOptions {
-    WriteOptions { depth: None, exposure: args.exposure, tone_map: None, overwrite: args.force }
+    WriteOptions { depth: None, exposure: args.exposure, tone_map: None, primaries: None, overwrite: args.force }
 }
 
 /// The picture that was read.
