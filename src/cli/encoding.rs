@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::ValueEnum;
 
 use crate::options::numbers::finite;
-use crate::photo::{self, Depth, Format, ToneMap, WriteOptions};
+use crate::photo::{self, Depth, Format, Primaries, ToneMap, WriteOptions};
 
 /// How pictures are written.
 #[derive(Debug, clap::Args)]
@@ -24,6 +24,11 @@ pub struct EncodingArgs {
     #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_hyphen_values = true, value_parser = finite)]
     exposure: f64,
 
+    /// The colour space that scene-linear pictures are written in, white to white: OpenEXR, float TIFF, PFM and Radiance HDR [default: the
+    /// photo's in OpenEXR, and in Radiance HDR of Radiance HDR; otherwise rec709]
+    #[arg(long, value_enum, value_name = "NAME")]
+    colorspace: Option<ColorSpaceArg>,
+
     /// Tone map, for PNG, JPEG and integer TIFF [default: none if the photo is display-referred, else agx]
     #[arg(long, value_enum)]
     tonemap: Option<ToneMapArg>,
@@ -37,6 +42,7 @@ impl EncodingArgs {
             depth: self.depth.map(Into::into),
             exposure: self.exposure,
             tone_map: self.tonemap.map(Into::into),
+            primaries: self.colorspace.map(Into::into),
             overwrite,
         }
     }
@@ -46,12 +52,13 @@ impl EncodingArgs {
     pub fn glare(&self, path: &Path, beside_picture: bool, overwrite: bool) -> WriteOptions {
         let asked: Option<Depth> = self.depth.map(Into::into);
         let depth = asked.filter(|&depth| !beside_picture || photo::holds(path, self.format(), depth));
-        WriteOptions { depth, ..self.other(overwrite) }
+        let primaries = self.colorspace.map(Into::into);
+        WriteOptions { depth, primaries, ..self.other(overwrite) }
     }
 
     /// How something else than the picture is written.
     pub fn other(&self, overwrite: bool) -> WriteOptions {
-        WriteOptions { format: self.format(), depth: None, exposure: 0.0, tone_map: None, overwrite }
+        WriteOptions { format: self.format(), depth: None, exposure: 0.0, tone_map: None, primaries: None, overwrite }
     }
 
     /// The same beside another file: `--format` is for names that do not tell, and where there is one, for that alone.
@@ -119,6 +126,36 @@ impl From<DepthArg> for Depth {
             DepthArg::Sixteen => Self::Sixteen,
             DepthArg::Half => Self::Half,
             DepthArg::Float => Self::Float,
+        }
+    }
+}
+
+/// `--colorspace`.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum ColorSpaceArg {
+    /// ITU-R BT.709
+    Rec709,
+    /// Display P3
+    P3d65,
+    /// ITU-R BT.2020
+    Rec2020,
+    /// ACES2065-1
+    Ap0,
+    /// ACEScg
+    Ap1,
+    /// Adobe RGB (1998)
+    Adobergb,
+}
+
+impl From<ColorSpaceArg> for Primaries {
+    fn from(space: ColorSpaceArg) -> Self {
+        match space {
+            ColorSpaceArg::Rec709 => Self::REC709,
+            ColorSpaceArg::P3d65 => Self::P3_D65,
+            ColorSpaceArg::Rec2020 => Self::REC2020,
+            ColorSpaceArg::Ap0 => Self::ACES2065_1,
+            ColorSpaceArg::Ap1 => Self::ACESCG,
+            ColorSpaceArg::Adobergb => Self::ADOBE_RGB,
         }
     }
 }

@@ -74,7 +74,7 @@ impl Surroundings {
     /// # Errors
     /// Those of [`photo::read_with`]; [`Error::ReadPhoto`] for one that is no panorama, or has pixels that are no number or infinite.
     pub fn read(path: &Path, options: &ReadOptions, hood: HoodArgs, look: &Look) -> Result<Self> {
-        let photo = photo::read_with(path, &ReadOptions { overscan: 0.0, ..*options })?;
+        let photo = photo::read_with(path, &ReadOptions { overscan: 0.0, ..options.clone() })?;
         let bad = photo::survey(&photo);
         if bad.nan + bad.infinite > 0 {
             let at =

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::beside::beside;
 use super::planned::stays_finite;
 use super::{
     Computer, Darkest, Done, Planned, Stages, Step, Wanted, Watch, bright_light, panorama, plan, settings, veil,
@@ -155,6 +156,9 @@ impl<'a> Found<'a> {
         }
         let change = cast.as_ref().map(|cast| cast.change(&photo.pixels));
         let mut picture = wanted.picture.then(|| Arc::unwrap_or_clone(photo));
+        if let Some(picture) = picture.as_mut().filter(|_| wanted.layers) {
+            picture.source.beside = beside(&scene, None, change.as_ref(), frame.window.pixels());
+        }
         if let (Some(change), Some(picture)) = (change, &mut picture) {
             stages.time("composite", || change.add_to(&mut picture.pixels));
         }

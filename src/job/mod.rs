@@ -22,6 +22,7 @@
 //! # Ok::<(), vglare::Error>(())
 //! ```
 
+mod beside;
 mod computer;
 mod done;
 mod each_pixel;
@@ -63,6 +64,8 @@ pub struct Wanted {
     pub picture: bool,
     /// The glare alone.
     pub glare: bool,
+    /// What the glare is made of, as layers beside the picture.
+    pub layers: bool,
     /// How long each pass takes, at the price of doing one after the other.
     pub times: bool,
     /// Where the error is measured.
@@ -72,7 +75,7 @@ pub struct Wanted {
 impl Default for Wanted {
     /// The picture alone.
     fn default() -> Self {
-        Self { picture: true, glare: false, times: false, verify: Verify::Sample }
+        Self { picture: true, glare: false, layers: false, times: false, verify: Verify::Sample }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::beside::beside;
 use super::{Computed, Computer, Done, EachPixel, Found, Planning, Stages, Step, Wanted, Watch, veil};
 use crate::certificate::{Certificate, Verify};
 use crate::gpu::{Info, PassTime};
@@ -61,6 +62,9 @@ impl<'a> Planned<'a> {
         let drawn = draw(renderer, photo, &planning.plan, &settings, wanted, &mut stages);
         renderer.field.set_timing(false);
         let Drawn { picture, mut glare, passes, measured_ms } = drawn?;
+        let ghosts = glare.as_ref().map(|glare| &*glare.pixels);
+        let layers = wanted.layers.then(|| beside(&scene, ghosts, change.as_ref(), frame.window.pixels()));
+        glare = glare.filter(|_| wanted.glare);
         if let (Some(cast), Some(glare)) = (&cast, &mut glare) {
             cast.add_to(&mut glare.pixels);
         }
@@ -75,6 +79,7 @@ impl<'a> Planned<'a> {
                 if let Some(change) = &change {
                     change.add_to(&mut picture.pixels);
                 }
+                picture.source.beside = layers.unwrap_or_default();
                 Some(picture)
             }
             None => None,
@@ -116,7 +121,7 @@ fn draw(
     stages.shift("plan", "spectrum", computed);
     let mut passes = renderer.field.take_times();
     let spectrum = computed + milliseconds(&passes);
-    let glare = match wanted.glare {
+    let glare = match wanted.glare || wanted.layers {
         true => Some(photo.companion(stages.time("glare", || renderer.glare(frame, settings))?)),
         false => None,
     };

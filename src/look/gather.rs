@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::colours::Colours;
 use super::patches::Patched;
 use super::{Look, LookLens, LookLights};
 use crate::choices::{Mix, Sources};
@@ -83,8 +84,8 @@ impl Look {
         let fits = |search: &Search| search.options == self.find && search.unit == frame.unit;
         let known = search.filter(fits).map(|search| search.found);
         let found = self.searches().then(|| known.unwrap_or_else(|| self.find(photo, recovered, frame)));
-        let images = self.images(|| self.raster(photo, recovered, frame));
-        Gathered { images, recovery: recovered.told.clone(), ..self.gather_from(found, frame) }
+        let images = self.images(photo, || self.raster(photo, recovered, frame));
+        Gathered { images, recovery: recovered.told.clone(), ..self.gather_from(found, photo, frame) }
     }
 
     /// How the pixels of a photo shine, of which all that glares is made: as they are shown, but for those that are clipped.
@@ -114,7 +115,7 @@ impl Look {
     }
 
     /// The ghosts of all pixels of a photo, as [`Look::raster`] gives it; none where others shine.
-    pub fn images(&self, raster: impl FnOnce() -> Arc<Raster>) -> Option<Arc<Images>> {
+    pub fn images(&self, photo: &Photo, raster: impl FnOnce() -> Arc<Raster>) -> Option<Arc<Images>> {
         let of = |raster: Arc<Raster>| {
             let look = self.fitted(&raster.frame());
             let (axis, size, tint) = (self.axis, self.size, self.tint);
@@ -125,17 +126,24 @@ impl Look {
                 }
                 _ => Images::new(raster, look.lens_ghosts(), axis, size, tint),
             };
-            Arc::new(images)
+            Arc::new(match Colours::of(photo) {
+                Some(colours) => colours.images(images),
+                None => images,
+            })
         };
         self.takes_photo().then(|| of(raster()))
     }
 
     /// What glares in a photo of which `found` is known, on its frame.
-    pub fn gather_from(&self, found: Option<Found>, frame: &Frame) -> Gathered {
+    pub fn gather_from(&self, found: Option<Found>, photo: &Photo, frame: &Frame) -> Gathered {
         let look = self.fitted(frame);
         let lights = self.lights(found.as_ref().map_or(&[], |found| &found.lights)).into_owned();
         let lens = (!lights.is_empty() || self.takes_photo()).then(|| look.lens());
-        Gathered { ghosts: look.ghosts(&lights).into(), found, lights, lens, images: None, recovery: None }
+        let ghosts = match Colours::of(photo) {
+            Some(colours) => colours.ghosts(&look, &lights),
+            None => look.ghosts(&lights),
+        };
+        Gathered { ghosts: ghosts.into(), found, lights, lens, images: None, recovery: None }
     }
 
     /// Whether a photo is to be searched: for lights, or for the threshold that tells them from the rest.
@@ -203,7 +211,7 @@ mod tests {
         let raster = Raster::new(&pixels, frame).unwrap();
         let flux = raster.flux();
         let look = Look { lens: LookLens::preset("double-gauss").unwrap(), ..Look::default() };
-        let images = look.images(|| raster).unwrap();
+        let images = look.images(&Photo::new(1, 1, vec![[0.0; 4]]), || raster).unwrap();
         let position = frame.position(f64::from(lamp[0]), f64::from(lamp[1]));
         let size = 0.288_675_134_594_812_9 * frame.pixel_sides().x;
         let fitted = look.fitted(&frame);

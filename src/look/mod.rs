@@ -1,7 +1,9 @@
 //! A look: everything that a person sets about a photo's glare, from a command line, a scene file, or by hand.
 
+mod colours;
 mod file;
 mod gather;
+mod made;
 mod patches;
 mod shared;
 mod unit;

@@ -8,7 +8,7 @@ use crate::options::numbers::finite;
 use crate::photo::{MAX_PIXELS, Missing, Primaries, ReadOptions, WhiteLuminance};
 
 /// How photos are read.
-#[derive(Debug, Clone, Copy, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Reading")]
 pub struct ReadArgs {
     /// The primaries of the photo's numbers, whatever its file says of them: rec709, p3-d65, rec2020, adobe-rgb,
@@ -28,6 +28,14 @@ pub struct ReadArgs {
     /// The most pixels that a photo's file may say it has, from 1 to 536870912; a larger one is refused before memory is taken
     #[arg(long, value_name = "N", default_value_t = MAX_PIXELS as u64, value_parser = clap::value_parser!(u64).range(1..=MAX_PIXELS as u64))]
     max_pixels: u64,
+    /// The part of an OpenEXR file that the picture is in, by name or by number, from 0 on [default: see docs/photos.md]
+    #[arg(long, value_name = "NAME|NUMBER")]
+    part: Option<String>,
+
+    /// The layer of an OpenEXR file that is the picture, as beauty where its channels are beauty.R, beauty.G and beauty.B; the others stay as
+    /// they are. `vglare info` lists them. '' is the one without a name [default: see docs/photos.md]
+    #[arg(long, value_name = "NAME")]
+    layer: Option<String>,
 }
 
 /// `--missing`.
@@ -41,12 +49,12 @@ enum MissingArg {
 
 impl ReadArgs {
     /// The library's options, for a photo whose white is so many cd/m², where that is given.
-    pub fn of_white(self, white_luminance: Option<WhiteLuminance>) -> ReadOptions {
+    pub fn of_white(&self, white_luminance: Option<WhiteLuminance>) -> ReadOptions {
         ReadOptions { white_luminance, ..self.options() }
     }
 
     /// The library's options.
-    pub fn options(self) -> ReadOptions {
+    pub fn options(&self) -> ReadOptions {
         let missing = match self.missing {
             MissingArg::Refuse => Missing::Refuse,
             MissingArg::Zero => Missing::Zero,
@@ -57,6 +65,8 @@ impl ReadArgs {
             primaries: self.primaries,
             overscan,
             max_pixels: Some(self.max_pixels as usize),
+            part: self.part.clone(),
+            layer: self.layer.clone(),
             ..ReadOptions::default()
         }
     }

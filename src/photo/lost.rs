@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Format, Photo, ToneMap, WriteOptions, metadata, native, write};
+use super::{Format, Photo, Primaries, ToneMap, WriteOptions, metadata, native, write};
 
 /// What a person ought to know of how `photo` becomes `path` with these options, a sentence each: nothing where it
 /// keeps its colours' meaning, or where [`write()`](super::write()) would refuse.
@@ -10,11 +10,11 @@ pub fn lost(path: &Path, photo: &Photo, options: &WriteOptions) -> Vec<String> {
     let Ok((format, depth)) = write::kind(path, photo, options) else { return Vec::new() };
     let beside = metadata::of(photo).map_or(Vec::new(), |metadata| metadata.lost(format));
     let mapped = options.tone_map.is_some_and(|map| map != ToneMap::None);
-    colours(photo, format, depth.is_display(), mapped)
-        .into_iter()
-        .chain(exposure(photo, format))
-        .chain(beside)
-        .collect()
+    let colours = match options.primaries {
+        Some(primaries) => space(photo, format, primaries),
+        None => colours(photo, format, depth.is_display(), mapped).into_iter().collect(),
+    };
+    colours.into_iter().chain(exposure(photo, format)).chain(beside).collect()
 }
 
 /// What becomes of colours, in a file for displays, whose tone map may have been asked for, or in one of light.
@@ -41,6 +41,23 @@ fn colours(photo: &Photo, format: Format, display: bool, mapped: bool) -> Option
         }
         _ => own.map(|from| format!("the photo's colours, {from}, are written as Rec. 709")),
     }
+}
+
+/// Of a file in primaries that were asked for.
+fn space(photo: &Photo, format: Format, primaries: Primaries) -> Vec<String> {
+    let source = &photo.source;
+    let mut notes = Vec::new();
+    if !source.knows_primaries && !source.display_referred {
+        notes.push("the photo's file does not say what its primaries are: they are taken for Rec. 709's".to_owned());
+    }
+    let title = primaries.title().unwrap_or("primaries of their own");
+    if matches!(format, Format::Tiff | Format::Pfm) {
+        notes.push(format!("{} cannot say that its colours are {title}: --primaries does", format.name()));
+    }
+    if format == Format::OpenExr && source.exr.is_some() && source.picture.is_some() {
+        notes.push("the photo's other layers stay in the primaries of its file".to_owned());
+    }
+    notes
 }
 
 fn exposure(photo: &Photo, format: Format) -> Option<String> {

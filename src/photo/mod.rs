@@ -30,6 +30,7 @@
 //! Display formats and Radiance HDR write NaN, −∞ and negative values as 0, and +∞ as the largest value they hold.
 
 mod bad;
+mod beside;
 mod camera;
 mod cicp;
 mod decode;
@@ -58,9 +59,11 @@ mod write;
 use std::sync::Arc;
 
 use glam::DMat3;
+use rayon::prelude::*;
 
 pub(crate) use bad::not_finite;
 pub use bad::{BadKind, BadPixels, survey};
+pub use beside::{Beside, Made, Part};
 pub use camera::View;
 pub use format::{Depth, Format};
 pub use lost::lost;
@@ -116,6 +119,8 @@ pub struct Source {
     pub display_referred: bool,
     /// The colours of (1,0,0), (0,1,0), (0,0,1) and (1,1,1), where they are not Rec.709's (scene-linear formats only).
     pub primaries: Option<Primaries>,
+    /// Whether the file, or a person, says what the primaries are; else they are taken for Rec.709's.
+    pub knows_primaries: bool,
     /// Width of a pixel over its height as it is shown, > 0; 1 in most files. The frame of a photo that was read has it too.
     pub pixel_aspect: f64,
     /// What the picture is called in a file that holds several: a layer, a part, a page.
@@ -136,6 +141,12 @@ pub struct Source {
     metadata: Option<Arc<metadata::Metadata>>,
     /// Whether it is more to be written fast than small.
     quick: bool,
+    /// How the picture was made, for files that can say so (OpenEXR).
+    pub made: Option<Arc<Made>>,
+    /// Layers that an OpenEXR file gets beside the picture.
+    pub beside: Vec<Beside>,
+    /// Whether formats that know no other primaries than Rec.709's get the pixels as they are.
+    keeps_space: bool,
     /// Everything else that an OpenEXR file held.
     exr: Option<Arc<exr::Rest>>,
     /// What the header of a Radiance file held.
@@ -165,6 +176,7 @@ impl Source {
             grey: false,
             display_referred: false,
             primaries: None,
+            knows_primaries: false,
             pixel_aspect: 1.0,
             picture: None,
             space: None,
@@ -175,6 +187,9 @@ impl Source {
             native: None,
             metadata: None,
             quick: false,
+            made: None,
+            beside: Vec::new(),
+            keeps_space: false,
             exr: None,
             radiance: None,
         }
@@ -200,11 +215,12 @@ impl Photo {
     /// If there are not as many pixels as the window holds.
     pub fn companion(&self, pixels: Vec<[f32; 4]>) -> Self {
         assert_eq!(pixels.len(), self.frame.window.pixels(), "a photo needs as many pixels as its window");
-        let Source { primaries, pixel_aspect, luminance, radiance, exr, .. } = &self.source;
-        let exr = exr.as_ref().map(|rest| Arc::new(rest.attributes_only(*primaries)));
-        let (primaries, pixel_aspect, radiance) = (*primaries, *pixel_aspect, radiance.clone());
-        let luminance = luminance.clone();
-        let source = Source { primaries, pixel_aspect, luminance, radiance, quick: true, exr, ..Source::plain() };
+        let Source { primaries, knows_primaries, pixel_aspect, luminance, radiance, exr, .. } = &self.source;
+        let exr = exr.as_ref().map(|rest| Arc::new(rest.attributes_only()));
+        let (primaries, knows_primaries, pixel_aspect) = (*primaries, *knows_primaries, *pixel_aspect);
+        let (radiance, luminance) = (radiance.clone(), luminance.clone());
+        let own = Source { primaries, knows_primaries, pixel_aspect, luminance, radiance, exr, ..Source::plain() };
+        let source = Source { quick: true, ..own };
         Self { frame: self.frame, pixels, source }
     }
 
@@ -273,6 +289,11 @@ impl Photo {
         Facts { frame: self.frame, format, depth, picture: self.source.picture.clone() }
     }
 
+    /// The parts of the OpenEXR file that it was read from; none of other formats.
+    pub fn parts(&self) -> Vec<Part> {
+        self.source.exr.as_ref().map_or_else(Vec::new, |rest| rest.parts())
+    }
+
     /// The share of red, green and blue in luminance (Y of CIE 1931); they add up to 1.
     ///
     /// Rec.709's 0.2126, 0.7152, 0.0722 unless the file names other primaries.
@@ -283,6 +304,30 @@ impl Photo {
     /// From the photo's primaries to Rec.709, white to white; none where they are the same.
     pub(crate) fn to_rec709(&self) -> Option<DMat3> {
         self.source.primaries.map(|primaries| primaries.to_rec709())
+    }
+
+    /// From the photo's primaries to those of a file that can name none; none where they are the same.
+    fn to_file(&self) -> Option<DMat3> {
+        if self.source.keeps_space { None } else { self.to_rec709() }
+    }
+
+    /// The same picture in other primaries, white to white, to be written in them whatever the format.
+    fn in_primaries(&self, primaries: Primaries) -> Self {
+        let mut photo = self.clone();
+        let own = self.source.primaries.unwrap_or(Primaries::REC709);
+        if !own.near(primaries) {
+            let matrix = primaries.to_rec709().inverse() * own.to_rec709();
+            let convert = |pixel: &mut [f32; 4]| {
+                let rgb = pfm::rec709(*pixel, Some(&matrix));
+                pixel[..3].copy_from_slice(&rgb);
+            };
+            photo.pixels.par_iter_mut().for_each(convert);
+            photo.source.beside.iter_mut().for_each(|layer| layer.pixels.par_iter_mut().for_each(convert));
+        }
+        photo.source.primaries = primaries.other_than_rec709();
+        photo.source.knows_primaries = true;
+        photo.source.keeps_space = true;
+        photo
     }
 
     /// The mean of what the picture shows, RGB.

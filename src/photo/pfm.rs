@@ -66,7 +66,7 @@ pub(super) fn write(mut writer: impl Write, photo: &Photo) -> Result<(), Reason>
     let kind = if grey { "Pf" } else { "PF" };
     write!(writer, "{kind}\n{} {}\n-1.0\n", photo.width(), photo.height())?;
     let mut line = Vec::with_capacity(photo.width() as usize * 12);
-    let gamut = photo.to_rec709();
+    let gamut = photo.to_file();
     for y in (0..photo.height()).rev() {
         line.clear();
         for &pixel in photo.picture_row(y).iter() {

@@ -66,8 +66,15 @@ impl Primaries {
         Self::NAMES.iter().position(|&(_, known)| self.near(known)).map(|k| TITLES[k])
     }
 
-    /// Those called `name`.
+    /// Those called `name`: one of [`Self::NAMES`], or as `--colorspace` has it, `p3d65`, `adobergb`, `ap0` or `ap1`.
     pub fn named(name: &str) -> Option<Self> {
+        let name = match name {
+            "p3d65" => "p3-d65",
+            "adobergb" => "adobe-rgb",
+            "ap0" => "aces2065-1",
+            "ap1" => "acescg",
+            name => name,
+        };
         Self::NAMES.into_iter().find(|&(known, _)| known == name).map(|(_, primaries)| primaries)
     }
 
@@ -86,7 +93,8 @@ impl Primaries {
         self.sound().filter(|_| !self.near(Self::REC709))
     }
 
-    fn near(self, other: Self) -> bool {
+    /// Whether they are the same to three decimals, as files round them.
+    pub(super) fn near(self, other: Self) -> bool {
         let points = |p: Self| [p.red, p.green, p.blue, p.white];
         points(self).into_iter().zip(points(other)).all(|(a, b)| (a - b).abs().max_element() < 1e-3)
     }

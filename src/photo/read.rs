@@ -30,7 +30,7 @@ pub enum Missing {
 }
 
 /// How a photo is read.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct ReadOptions {
     /// What becomes of pixels that an unfinished file lacks (OpenEXR only).
     pub missing: Missing,
@@ -43,6 +43,11 @@ pub struct ReadOptions {
     pub overscan: f64,
     /// The most pixels that the file may say it has, at most [`MAX_PIXELS`], which is the default.
     pub max_pixels: Option<usize>,
+    /// The part of an OpenEXR file that the picture is in: its name, or its number from 0 on.
+    pub part: Option<String>,
+    /// The layer of an OpenEXR file that is the picture, `beauty` where its channels are `beauty.R`, `beauty.G`, `beauty.B`: what their names begin
+    /// with, or the name of the part where they begin with nothing; empty for those without any such name.
+    pub layer: Option<String>,
 }
 
 /// Reads a photo; `-` is standard input.
@@ -57,18 +62,24 @@ pub fn read(path: &Path) -> Result<Photo> {
 /// Reads a photo in the way that is asked for.
 ///
 /// # Errors
-/// Those of [`read`].
+/// Those of [`read`], and where there is no such part or layer; the reason lists those that there are.
 pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Photo> {
     let decoded = || -> std::result::Result<Photo, Reason> {
         let mut reader = open(path)?;
         let format = Format::from_magic(reader.fill_buf()?)?;
+        if format != Format::OpenExr && (options.part.is_some() || options.layer.is_some()) {
+            return Err(format!("it is {}, which has no parts and layers to choose from", format.name()).into());
+        }
         let mut photo = decode(reader, format, options)?;
+        // What is decoded for a display has become Rec. 709.
+        photo.source.knows_primaries |= photo.source.display_referred || photo.source.space.is_some();
         // A JPEG with a gain map is scene-linear, and of Rec. 709's primaries whatever its own are, as is what comes of JPEG XL.
         if let Some(primaries) = options.primaries
             && !photo.source.display_referred
             && !matches!(format, Format::Jpeg | Format::JpegXl)
         {
             photo.source.primaries = primaries.other_than_rec709();
+            photo.source.knows_primaries = true;
         }
         luminance::settle(&mut photo, options.white_luminance)?;
         shape_pixels(&mut photo);

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::display::Look;
-use super::{Depth, Format, Photo, Reason, ToneMap, exr, jpeg, pfm, png, radiance, tiff};
+use super::{Depth, Format, Photo, Primaries, Reason, ToneMap, exr, jpeg, pfm, png, radiance, tiff};
 use crate::error::{Error, Result};
 use crate::target::{Sink, Target};
 
@@ -19,6 +19,9 @@ pub struct WriteOptions {
     pub exposure: f64,
     /// For display formats only. By default none if the input was display-referred, else [`ToneMap::Agx`].
     pub tone_map: Option<ToneMap>,
+    /// The primaries that the picture is written in, for scene-linear formats only. By default those of the photo where the format can say so, else
+    /// Rec.709's.
+    pub primaries: Option<Primaries>,
     /// Whether an existing file is replaced.
     pub overwrite: bool,
 }
@@ -93,6 +96,8 @@ pub fn write(path: &Path, photo: &Photo, options: &WriteOptions) -> Result<()> {
 /// Those of [`write()`], and [`Error::Cancelled`]; nothing is left behind then, unless `path` is a pipe.
 pub fn write_unless(path: &Path, photo: &Photo, options: &WriteOptions, cancelled: impl Fn() -> bool) -> Result<()> {
     let plan = plan(path, photo, options)?;
+    let converted = options.primaries.map(|primaries| photo.in_primaries(primaries));
+    let photo = converted.as_ref().unwrap_or(photo);
     plan.target.write(&cancelled, |sink| plan.encode(sink, photo))
 }
 
@@ -113,10 +118,11 @@ impl Plan {
 
 fn plan(path: &Path, photo: &Photo, options: &WriteOptions) -> Result<Plan> {
     // Field by field: a new one has to be used here, or not to be.
-    let &WriteOptions { format, depth: asked, exposure, tone_map, overwrite } = options;
+    let &WriteOptions { format, depth: asked, exposure, tone_map, primaries, overwrite } = options;
     let resolved = Format::of_name(path, format).and_then(|format| {
         check_picture(photo, format)?;
         let depth = depth(format, photo, asked)?;
+        primaries.map_or(Ok(()), |_| check_space(photo, format, depth))?;
         Ok((format, depth, look(format, depth, photo, exposure, tone_map)?))
     });
     let (format, depth, look) = resolved.map_err(|reason| Error::write(path, reason))?;
@@ -135,7 +141,7 @@ fn plan(path: &Path, photo: &Photo, options: &WriteOptions) -> Result<Plan> {
 /// # Errors
 /// Where the name or the options ask for what there is not.
 pub(super) fn kind(path: &Path, photo: &Photo, options: &WriteOptions) -> Result<(Format, Depth), Reason> {
-    let &WriteOptions { format, depth: asked, exposure: _, tone_map: _, overwrite: _ } = options;
+    let &WriteOptions { format, depth: asked, exposure: _, tone_map: _, primaries: _, overwrite: _ } = options;
     let format = Format::of_name(path, format)?;
     Ok((format, depth(format, photo, asked)?))
 }
@@ -170,6 +176,18 @@ fn depth(format: Format, photo: &Photo, asked: Option<Depth>) -> Result<Depth, R
         None if format == Format::Png && source.depth == Depth::Sixteen => Ok(Depth::Sixteen),
         None => Ok(*depths.last().expect("a format has a depth")),
     }
+}
+
+/// Whether a file can be written in other primaries.
+fn check_space(photo: &Photo, format: Format, depth: Depth) -> Result<(), Reason> {
+    if depth.is_display() {
+        let (format, depth) = (format.name(), depth.name());
+        return Err(format!("{depth} {format} is made for a display, and is written as sRGB").into());
+    }
+    if format == Format::OpenExr && photo.source.exr.as_ref().is_some_and(|rest| rest.is_xyz()) {
+        return Err("its channels X, Y and Z hold CIE XYZ, and no other primaries".into());
+    }
+    Ok(())
 }
 
 fn look(format: Format, depth: Depth, photo: &Photo, exposure: f64, tone_map: Option<ToneMap>) -> Result<Look, Reason> {

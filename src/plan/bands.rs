@@ -248,7 +248,7 @@ mod tests {
         let look =
             Look { lens: LookLens::preset("double-gauss").unwrap(), axis: DVec2::new(0.1, -0.05), ..Look::default() };
         // In patches, each with its own cut ghosts.
-        let images = look.images(|| raster).unwrap();
+        let images = look.images(&crate::photo::Photo::new(1, 1, vec![[0.0; 4]]), || raster).unwrap();
         assert!(images.patches() > 2);
         let problem = Problem::with_images(Vec::new(), images.clone(), frame);
         for tolerance in [1e-2, 1e-3] {

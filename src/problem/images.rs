@@ -216,6 +216,12 @@ impl Images {
         Self { all: members.iter().map(|&member| self.all[member].clone()).collect(), ..self.clone() }
     }
 
+    /// The same with the colours of its ghosts changed.
+    pub(crate) fn recoloured(mut self, colour: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
+        self.all.iter_mut().for_each(|image| image.ghost.radiance = colour(image.ghost.radiance));
+        self
+    }
+
     /// What of each colour's flux the ghosts carry in all.
     pub fn share(&self) -> [f64; 3] {
         let whole = self.raster().flux();

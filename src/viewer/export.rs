@@ -124,7 +124,8 @@ fn write(
     let wanted = Wanted { picture: subject == Subject::Picture, glare: subject == Subject::Glare, ..Wanted::default() };
     let Done { picture, glare, mut warnings, .. } = found.compute(computer.as_mut(), wanted, watch)?;
     watch.begin(Step::Writing)?;
-    if let Some(picture) = picture.or(glare) {
+    if let Some(mut picture) = picture.or(glare) {
+        picture.source.made = Some(look.made().into());
         photo::write_unless(path, &picture, &options, || watch.cancelled())?;
         warnings.extend(photo::lost(path, &picture, &options));
     }

@@ -66,13 +66,13 @@ impl Loader {
 
     /// Begins to read a photo.
     pub fn read(&mut self, path: PathBuf, look: Look) {
-        let (file, options) = (path.clone(), self.options);
+        let (file, options) = (path.clone(), self.options.clone());
         self.ask(path, None, Box::new(move || Document::read(&file, &options, look)));
     }
 
     /// Begins to read a photo again whose document let go of its pixels.
     pub fn wake(&mut self, number: u64, document: &Document) {
-        let (file, look, options) = (document.path.clone(), document.known_look(), self.options);
+        let (file, look, options) = (document.path.clone(), document.known_look(), self.options.clone());
         self.ask(document.path.clone(), Some(number), Box::new(move || Document::read(&file, &options, look)));
     }
 

@@ -201,10 +201,13 @@ impl Stage {
         let recovered = self.made.recovered(document, &known);
         self.veiling.ask(number, document, &recovered, frame, &known, shows == Shows::Glare)?;
         if work >= Work::Ghosts {
-            let images = look.images(|| self.made.raster(document, &recovered, look, &whole));
+            let images = look.images(&document.photo, || self.made.raster(document, &recovered, look, &whole));
             let recovery = recovered.told.clone();
-            self.made.scene =
-                Some(Gathered { images, recovery, ..look.gather_from(Some(document.found.clone()), &whole) });
+            self.made.scene = Some(Gathered {
+                images,
+                recovery,
+                ..look.gather_from(Some(document.found.clone()), &document.photo, &whole)
+            });
         }
         let Some(scene) = &self.made.scene else { return Ok(()) };
         let (bright, by) = (&mut self.made.bright, look.find.by);

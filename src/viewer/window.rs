@@ -128,7 +128,7 @@ impl Start {
             let _ = proxy.send_event(Wanted);
         });
         let mut app = App::new(&device, self.look, wake)?;
-        app.read_by(self.reading);
+        app.read_by(self.reading.clone());
         state.clone().into_iter().for_each(|state| app.remember(state));
         app.use_dialogs();
         self.photos.into_iter().for_each(|path| app.open(path));

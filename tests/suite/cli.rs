@@ -5,6 +5,7 @@ mod bad_input;
 mod calibrate;
 mod each_pixel;
 mod environment;
+mod exr;
 mod extremes;
 mod harmonics;
 mod interrupted;

@@ -7,6 +7,7 @@ mod exr;
 mod exr_gaps;
 mod exr_layers;
 mod exr_sampled;
+mod exr_whole;
 mod jpeg;
 mod kept;
 mod target;

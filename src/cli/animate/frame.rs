@@ -1,5 +1,7 @@
 //! Frame after frame: what stands still is there already, and what moves is added.
 
+use std::sync::Arc;
+
 use super::parts::{Maker, Part, Photos, Pixels, Shares, add, shell};
 use super::shot::{Cast, Shot};
 use super::told::{ErrorTold, PlanTold, Told, together, veils};
@@ -73,6 +75,8 @@ impl<'a> Lights<'a> {
         let shares = Shares::new(stills, cast.moves());
         let goal = maker.look.accuracy.goal;
         let mut base = Base::new(&photo, sheet);
+        let made = Arc::new(maker.look.made());
+        [&mut base.picture, &mut base.glare].into_iter().for_each(|photo| photo.source.made = Some(made.clone()));
         let wanted = maker.wanted();
         if stands {
             let look = maker.look;
@@ -188,7 +192,13 @@ pub fn seen(maker: &mut Maker<'_>, view: View<'_>) -> Result<Drawn> {
     let asked = told.error.map_or(0.0, |error| error.asked);
     let frame = FrameTold { veil: veils(&parts), error: together(&parts, asked), ..FrameTold::of(Some(&told), &parts) };
     let warnings = [frame.warnings.clone(), warnings].concat();
-    let [picture, glare] = [picture, glare].map(|photo| photo.map(Photo::cropped));
+    let made = Arc::new(maker.look.made());
+    let finished = |photo: Photo| {
+        let mut photo = photo.cropped();
+        photo.source.made = Some(made.clone());
+        photo
+    };
+    let [picture, glare] = [picture, glare].map(|photo| photo.map(finished));
     Ok(Drawn { picture, glare, told: FrameTold { warnings, outside, ..frame } })
 }
 

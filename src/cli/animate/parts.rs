@@ -106,6 +106,7 @@ impl<'a> Maker<'a> {
             // A report alone tells of a picture that nobody keeps.
             picture: self.args.output.is_some() || self.args.outputs.glare.is_none(),
             glare: self.args.outputs.glare.is_some() || self.args.outputs.plot.is_some(),
+            layers: false,
             times: false,
             verify: self.args.proof.verify,
         }

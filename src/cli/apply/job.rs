@@ -1,5 +1,7 @@
 //! What is done with one photo: read, lay the look over it, write.
 
+use std::sync::Arc;
+
 use serde::Serialize;
 
 use super::lock::Locked;
@@ -82,6 +84,7 @@ impl<'a> Job<'a, Found<'a>> {
                 || paths.map.is_some()
                 || args.surroundings.environment.is_some()
                 || luminance.is_some() && (args.output_options.report.is_some() || !args.quiet),
+            layers: args.output_options.layers,
             times: args.verbose || args.output_options.report.is_some() || work.look.accuracy.goal.budget().is_some(),
             verify: args.proof.verify,
         };
@@ -129,7 +132,9 @@ impl Job<'_, Done<'_>> {
             let beyond = self.work.beyond(largest);
             self.work.warnings.extend(lost.into_iter().chain(beyond));
         }
-        let Done { picture, glare, stages, .. } = &mut self.work;
+        let Done { look, picture, glare, stages, .. } = &mut self.work;
+        let made = Arc::new(look.made());
+        picture.iter_mut().chain(glare.iter_mut()).for_each(|photo| photo.source.made = Some(made.clone()));
         if let (Some(Luminance { scale, glare: told, .. }), Some(glare)) = (&mut self.luminance, glare.as_ref()) {
             *told = Extent::of(glare, scale);
         }

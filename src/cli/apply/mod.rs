@@ -24,6 +24,7 @@ use std::path::PathBuf;
 
 use crate::Result;
 use crate::certificate::Verify;
+use crate::choices::Mix;
 use crate::cli::encoding::EncodingArgs;
 use crate::look::Look;
 use crate::options::AccuracyArgs;
@@ -33,7 +34,7 @@ use crate::options::ReadArgs;
 use crate::options::SceneArgs;
 use crate::options::VeilArgs;
 use crate::options::numbers::range;
-use crate::{Result, limits, target};
+use crate::{Error, Result, limits, target};
 
 use look::LookArgs;
 use shot::ShotArgs;
@@ -128,6 +129,8 @@ Examples:
   vglare apply night.exr -o veiled.exr --budget 20 --verify full
   vglare apply night.exr --glare glare.exr --depth half
   vglare apply - -o - --format png < night.exr > night.png
+  vglare apply night.exr -o veiled.exr --layers
+  vglare apply render.exr -o veiled.exr --layer beauty --colorspace ap1
   vglare apply shot.*.exr -o veiled/
   vglare apply shot.*.exr -o 'veiled.####.exr' --glare 'glare.####.exr' --report report.json
   vglare apply shot.*.exr -o 'previews/{name}.png' --keep-going --quiet
@@ -167,11 +170,26 @@ impl Args {
         )?);
         let (find, accuracy) = (self.find.over(look.find), self.accuracy.over(look.accuracy));
         self.surroundings.check()?;
+        self.check_layers(&look)?;
         VeilArgs::check_panorama(&look, self.scene.lens_option())?;
         if self.surroundings.environment.is_none() {
             self.scene.unit.check(&look)?;
         }
         Ok(Look { find, accuracy, ..look })
+    }
+}
+
+impl Args {
+    /// Layers are of a sum, and a look may make something else of a photo.
+    fn check_layers(&self, look: &Look) -> Result<()> {
+        let against = [
+            (look.mix != Mix::Add, "--mix energy: it takes light from the photo, which none of them would show"),
+            (self.surroundings.environment.is_some(), "--environment: they are of what the picture itself makes"),
+        ];
+        match against.into_iter().find(|(is_there, _)| *is_there && self.output_options.layers) {
+            Some((_, why)) => Err(Error::Usage(format!("--layers cannot be used with {why}"))),
+            None => Ok(()),
+        }
     }
 }
 
@@ -196,6 +214,11 @@ struct OutputArgs {
     /// For several photos a folder or a pattern, like OUTPUT
     #[arg(long, value_name = "FILE")]
     glare: Option<PathBuf>,
+
+    /// Write what was added to the photo as layers beside the picture, OpenEXR only, in 32-bit floats: glare.R, glare.G, glare.B by the ghosts of all
+    /// pixels, lights by those of lights where only lights make some, veil by the veil, less what it takes. The photo and all three are the picture
+    #[arg(long, requires = "output")]
+    layers: bool,
 
     /// Draw the luminance of all that was added in false colours, on a logarithmic scale with a legend: in cd/m² where --luminance or
     /// the file says what the photo's numbers are, else in its numbers. .png or .svg; for several photos a pattern, like OUTPUT

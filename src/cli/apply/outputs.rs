@@ -8,7 +8,7 @@ use super::names::Names;
 use super::{Args, OutputArgs};
 use crate::chart::Kind;
 use crate::cli::encoding::EncodingArgs;
-use crate::photo::{self, Photo, WriteOptions};
+use crate::photo::{self, Depth, Photo, WriteOptions};
 use crate::shot::Frames;
 use crate::target::{self, Identity};
 use crate::{Error, Result};
@@ -140,6 +140,7 @@ pub fn of(args: &Args, inputs: Inputs, overwrites: bool) -> Result<Work> {
     let is_file = |names: &Names| matches!(names, Names::File(_));
     if !several && !is_shot && all().all(is_file) {
         let paths = Paths::single(args);
+        holds_layers(args, paths.output.as_deref())?;
         paths.map.iter().try_for_each(|path| Kind::of(path).map(drop))?;
         apart(args, std::slice::from_ref(&paths))?;
         return Ok(Work::Single(paths));
@@ -159,6 +160,7 @@ pub fn of(args: &Args, inputs: Inputs, overwrites: bool) -> Result<Work> {
         let picture = frame.output.iter().map(|path| (path, picture_options(args)));
         let glare = frame.glare.iter().map(|path| (path, glare_options(args, path)));
         picture.chain(glare).try_for_each(|(path, options)| photo::check_name(path, options.format))?;
+        holds_layers(args, frame.output.as_deref())?;
         frame.map.iter().try_for_each(|path| Kind::of(path).map(drop))?;
         if let Some(path) = frame.files().find(|path| path.is_file() && !overwrites) {
             return Err(Error::Exists { path: path.clone() });
@@ -169,6 +171,16 @@ pub fn of(args: &Args, inputs: Inputs, overwrites: bool) -> Result<Work> {
     }
     let place = all().next().map(|names| names.place().to_owned());
     Ok(Work::Sequence(Sequence { frames, missing, place }))
+}
+
+/// Whether the picture's file can hold the layers that are asked for.
+fn holds_layers(args: &Args, output: Option<&Path>) -> Result<()> {
+    let Some(path) = output.filter(|_| args.output_options.layers) else { return Ok(()) };
+    // No other format knows half floats.
+    if photo::holds(path, Depth::Half) {
+        return Ok(());
+    }
+    Err(Error::Usage(format!("--layers: {} is no .exr, and other formats hold no layers", path.display())))
 }
 
 /// A name without fields that many outputs are to share, as the folder that it can only be.

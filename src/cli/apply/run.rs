@@ -11,7 +11,7 @@ use crate::cli::surroundings::{Seen, Surroundings};
 use crate::job::{Computer, Stages, Step, Watch as _};
 use crate::look::Look;
 use crate::motion::VIEW_FOV;
-use crate::photo::{self, Photo};
+use crate::photo::{self, Photo, ReadOptions};
 use crate::scene::check_fov;
 use crate::terminal::progress::Progress;
 use crate::{Error, Result, limits, panics, target};
@@ -102,6 +102,8 @@ fn read(args: &Args, paths: &Paths, look: &Look) -> Result<Ready> {
     let read = || {
         let options = args.reading.of_white(args.veil.white_luminance());
         let photo = (!args.inputs.is_empty()).then(|| photo::read_with(&paths.input, &options)).transpose()?;
+        // A part or a layer is named of the photo, where there is one.
+        let options = if photo.is_some() { ReadOptions { part: None, layer: None, ..options } } else { options };
         let around = args.surroundings.environment.as_ref();
         let around = around.map(|path| Surroundings::read(path, &options, args.surroundings.hood, look)).transpose()?;
         Ok((photo, around))

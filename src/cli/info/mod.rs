@@ -58,7 +58,7 @@ struct Report {
 /// error here.
 pub fn run(args: &Args) -> Result<()> {
     if let Some(path) = &args.photo {
-        return photo::run(path, args.reading, args.json);
+        return photo::run(path, &args.reading, args.json);
     }
     let reports: Vec<Report> =
         Backend::ALL.into_iter().map(|backend| report(backend, args.precision)).collect::<Result<_>>()?;

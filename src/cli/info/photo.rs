@@ -5,18 +5,23 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::Result;
 use crate::choices::Projection;
 use crate::cli::photo_told::PhotoTold;
 use crate::options::ReadArgs;
-use crate::photo::{self, LuminanceScale, Photo};
+use crate::photo::{self, LuminanceScale, Part, Photo};
 use crate::terminal::{digits, stderr, stdout};
+use crate::{Result, printable};
+
+/// Channels of a part that are listed.
+const MOST_CHANNELS: usize = 40;
 
 #[derive(Serialize)]
 struct Report {
     #[serde(flatten)]
     photo: PhotoTold,
     primaries: String,
+    /// Whether the file says so; else they are taken for Rec. 709's.
+    says_primaries: bool,
     display_referred: bool,
     /// The shares of red, green and blue in luminance.
     luminance_weights: [f64; 3],
@@ -24,6 +29,9 @@ struct Report {
     luminance: Option<LuminanceScale>,
     fov: Option<f64>,
     fov_from: Option<String>,
+    /// Of an OpenEXR file.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    parts: Vec<Part>,
     notes: Vec<String>,
 }
 
@@ -31,7 +39,7 @@ struct Report {
 ///
 /// # Errors
 /// Those of [`photo::read_with`], and where standard output cannot be written.
-pub fn run(path: &Path, reading: ReadArgs, as_json: bool) -> Result<()> {
+pub fn run(path: &Path, reading: &ReadArgs, as_json: bool) -> Result<()> {
     let report = report(path, photo::read_with(path, &reading.options())?);
     if as_json {
         return stdout::json(|out| {
@@ -57,13 +65,32 @@ fn report(path: &Path, photo: Photo) -> Report {
     Report {
         photo: PhotoTold::new(path, &facts),
         primaries,
+        says_primaries: photo.source.knows_primaries || photo.source.display_referred,
         display_referred: photo.source.display_referred,
         luminance_weights: photo.luminance_weights(),
         luminance: photo.luminance_scale(),
         fov: view.as_ref().map(|view| view.across(&facts.frame, Projection::Rectilinear)),
         fov_from: view.map(|view| view.from),
+        parts: photo.parts(),
         notes,
     }
+}
+
+/// The names to choose from, where there is a choice.
+fn parts(out: &mut dyn Write, parts: &[Part]) -> io::Result<()> {
+    let is_one = |part: &Part| part.layers.len() == 1;
+    if parts.len() == 1 && parts.iter().all(is_one) {
+        return Ok(());
+    }
+    for (number, Part { name, channels, .. }) in parts.iter().enumerate() {
+        let first = channels.iter().take(MOST_CHANNELS).map(String::as_str).collect::<Vec<_>>().join(", ");
+        let more = channels.len().saturating_sub(MOST_CHANNELS);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        let name = name.as_ref().map_or_else(String::new, |name| format!("{name}: "));
+        let line = printable::line(&format!("{name}{first}{more}"));
+        writeln!(out, "  {:<19}{line}", format!("part {number}"))?;
+    }
+    Ok(())
 }
 
 fn text(out: &mut dyn Write, report: &Report) -> io::Result<()> {
@@ -72,6 +99,7 @@ fn text(out: &mut dyn Write, report: &Report) -> io::Result<()> {
     writeln!(out, "{file}")?;
     writeln!(out, "  format             {format}, {depth}")?;
     layer.iter().try_for_each(|layer| writeln!(out, "  layer              {layer}"))?;
+    parts(out, &report.parts)?;
     writeln!(out, "  picture            {width} x {height}")?;
     if [*left, *top, *columns, *rows] != [0, 0, i64::from(*width), i64::from(*height)] {
         writeln!(out, "  stored             {columns} x {rows} from column {left}, row {top}")?;
@@ -81,7 +109,8 @@ fn text(out: &mut dyn Write, report: &Report) -> io::Result<()> {
     }
     let numbers = if report.display_referred { "made for a display, in linear light" } else { "scene-linear" };
     writeln!(out, "  numbers            {numbers}")?;
-    writeln!(out, "  primaries          {}", report.primaries)?;
+    let taken = if report.says_primaries { "" } else { ", which the file does not say" };
+    writeln!(out, "  primaries          {}{taken}", report.primaries)?;
     let [red, green, blue] = report.luminance_weights;
     writeln!(out, "  luminance          {red:.4} R + {green:.4} G + {blue:.4} B")?;
     match &report.luminance {

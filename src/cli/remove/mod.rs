@@ -15,7 +15,7 @@ use crate::job::{self, Removed, Removing, Stages, Step, Watch as _};
 use crate::look::Look;
 use crate::options::ReadArgs;
 use crate::options::numbers::{positive, tolerance};
-use crate::photo::{self, Photo, ToneMap, WriteOptions};
+use crate::photo::{self, Made, Photo, ToneMap, WriteOptions};
 use crate::terminal::progress::Progress;
 use crate::{Error, Result, target};
 
@@ -197,6 +197,8 @@ pub fn run(args: &Args) -> Result<()> {
     progress.step(Step::Computing);
     let mut removed = job::remove(&look, photo, args.removing(), &mut stages)?;
     removed.warnings.extend(model::ghosts_stay(&look));
+    // A look, as it is taken away.
+    removed.photo.source.made = Some(Made::new(&format!("# vglare remove\n{}", look.made().settings)).into());
     progress.step(Step::Writing);
     let written = {
         let stages = &mut stages;

@@ -110,7 +110,14 @@ fn check_targets(args: &Args, output: &Photo) -> Result<()> {
 }
 
 fn write_options(args: &Args) -> WriteOptions {
-    WriteOptions { format: None, depth: None, exposure: args.exposure, tone_map: None, overwrite: args.force }
+    WriteOptions {
+        format: None,
+        depth: None,
+        exposure: args.exposure,
+        tone_map: None,
+        primaries: None,
+        overwrite: args.force,
+    }
 }
 
 /// The picture that was read.

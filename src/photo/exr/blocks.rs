@@ -4,9 +4,12 @@
 //! is too short to hold, and finds the blocks of a file whose table was never written, as OpenEXR does: one after
 //! another.
 
-use std::io::{BufRead, Seek, SeekFrom};
+use std::io::{BufRead, Read as _, Seek, SeekFrom};
 
-use exr::block::chunk::{Chunk, CompressedBlock, CompressedScanLineBlock, CompressedTileBlock, TileCoordinates};
+use exr::block::chunk::{
+    Chunk, CompressedBlock, CompressedDeepScanLineBlock, CompressedDeepTileBlock, CompressedScanLineBlock,
+    CompressedTileBlock, TileCoordinates,
+};
 use exr::math::Vec2;
 use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
@@ -14,10 +17,13 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::super::{Missing, Reason};
 use super::explain;
-use super::unpack::unsampled;
+use super::unpack::plain;
 
 /// Bytes of an entry of the table.
 const ENTRY: u64 = 8;
+
+/// Bytes within which the attributes of most files are.
+const HEADERS: u64 = 1 << 16;
 
 /// A file whose headers are read.
 pub(super) struct Blocks<R> {
@@ -43,7 +49,10 @@ struct Head {
     tile: TileCoordinates,
     /// Of a scan line block.
     y: i32,
+    /// Bytes that follow.
     size: usize,
+    /// Of deep data: how many of these are the table of samples, and how many bytes the samples have once they are decompressed.
+    deep: Option<(usize, usize)>,
 }
 
 /// A block of the file.
@@ -67,18 +76,18 @@ impl<R: BufRead + Seek> Blocks<R> {
     /// Reads the headers.
     ///
     /// # Errors
-    /// Where they are damaged, describe deep data, or more blocks than a file of this length has room for.
+    /// Where they are damaged, or describe more blocks than a file of this length has room for.
     pub fn open(mut reader: R) -> Result<Self, Reason> {
         let length = reader.seek(SeekFrom::End(0))?;
         reader.rewind()?;
-        let meta = MetaData::read_from_buffered(&mut reader, true).map_err(explain)?;
-        if meta.headers.iter().any(|header| header.deep) {
-            return Err("it holds deep data, which vglare does not read".into());
-        }
+        let meta = match MetaData::read_from_buffered(&mut reader, true) {
+            Ok(meta) => meta,
+            Err(error) => return Err(new_compression(reader).unwrap_or_else(|| explain(error))),
+        };
         for header in &meta.headers {
             check_sampling(header)?;
         }
-        MetaData::validate(&unsampled(&meta.headers), false).map_err(explain)?;
+        MetaData::validate(&plain(&meta.headers), false).map_err(explain)?;
         let position = reader.stream_position()?;
         let mut table = 0;
         for header in &meta.headers {
@@ -157,11 +166,13 @@ impl<R: BufRead + Seek> Blocks<R> {
             let mut compressed_pixels_le = vec![0; head.size];
             self.reader.read_exact(&mut compressed_pixels_le)?;
             self.position += head.size as u64;
-            let compressed_block = match self.meta.headers[head.part].blocks {
-                BlockDescription::ScanLines => {
+            let blocks = self.meta.headers[head.part].blocks;
+            let compressed_block = match (blocks, head.deep) {
+                (_, Some(deep)) => deep_block(&head, blocks, deep, &compressed_pixels_le),
+                (BlockDescription::ScanLines, None) => {
                     CompressedBlock::ScanLine(CompressedScanLineBlock { y_coordinate: head.y, compressed_pixels_le })
                 }
-                BlockDescription::Tiles(_) => {
+                (BlockDescription::Tiles(_), None) => {
                     CompressedBlock::Tile(CompressedTileBlock { coordinates: head.tile, compressed_pixels_le })
                 }
             };
@@ -191,7 +202,9 @@ impl<R: BufRead + Seek> Blocks<R> {
         };
         let (blocks, top) = (header.blocks, header.own_attributes.layer_position.y());
         let lines = header.compression.scan_lines_per_block();
-        if self.position + if blocks == BlockDescription::ScanLines { 8 } else { 20 } > self.length {
+        let is_deep = header.deep;
+        let place = if blocks == BlockDescription::ScanLines { 4 } else { 16 };
+        if self.position + place + if is_deep { 24 } else { 4 } > self.length {
             return Ok(None);
         }
         let mut y = 0;
@@ -211,11 +224,16 @@ impl<R: BufRead + Seek> Blocks<R> {
                 _ => None,
             }
         };
-        let size = u64::try_from(i32::from_le_bytes(self.number()?)).unwrap_or(u64::MAX);
+        let (size, deep) = if is_deep {
+            let [table, samples, unpacked] = [self.number()?, self.number()?, self.number()?].map(u64::from_le_bytes);
+            (table.saturating_add(samples), Some((table as usize, unpacked as usize)))
+        } else {
+            (u64::try_from(i32::from_le_bytes(self.number()?)).unwrap_or(u64::MAX), None)
+        };
         let is_whole = size > 0 && size <= self.length - self.position;
         let part = part as usize;
         let tile = tile.filter(|tile| is_whole && self.places[part].contains_key(tile));
-        Ok(tile.map(|tile| Head { part, tile, y, size: size as usize }))
+        Ok(tile.map(|tile| Head { part, tile, y, size: size as usize, deep }))
     }
 
     fn number<const N: usize>(&mut self) -> Result<[u8; N], Reason> {
@@ -247,6 +265,45 @@ impl Gaps {
             Missing::Refuse => Err(format!("{lack}; --missing zero reads the rest").into()),
             Missing::Zero => Ok(format!("{lack}, and their pixels are 0")),
         }
+    }
+}
+
+/// The refusal of a compression that has a name, and that the crate does not know.
+fn new_compression(mut reader: impl BufRead + Seek) -> Option<Reason> {
+    const ATTRIBUTE: &[u8] = b"compression\0compression\0\x01\0\0\0";
+    // By OpenEXR 3.5's ImfCompression.h.
+    const NAMES: [(u8, &str); 2] = [(12, "LJ2K"), (13, "Zstandard")];
+    let mut head = Vec::new();
+    reader.rewind().ok()?;
+    reader.take(HEADERS).read_to_end(&mut head).ok()?;
+    let values = head.windows(ATTRIBUTE.len() + 1).filter_map(|bytes| bytes.strip_prefix(ATTRIBUTE));
+    let mut names = values.filter_map(|value| NAMES.iter().find(|(code, _)| *code == value[0]));
+    names.next().map(|(_, name)| format!("it is compressed by {name}, which vglare does not read").into())
+}
+
+/// A block of deep data: the table of how many samples each pixel has, then the samples, both compressed.
+fn deep_block(
+    head: &Head,
+    blocks: BlockDescription,
+    (table, unpacked): (usize, usize),
+    bytes: &[u8],
+) -> CompressedBlock {
+    let (table, samples) = bytes.split_at(table);
+    let compressed_pixel_offset_table = bytemuck::cast_slice(table).to_vec();
+    let (compressed_sample_data_le, decompressed_sample_data_size) = (samples.to_vec(), unpacked);
+    match blocks {
+        BlockDescription::ScanLines => CompressedBlock::DeepScanLine(CompressedDeepScanLineBlock {
+            y_coordinate: head.y,
+            decompressed_sample_data_size,
+            compressed_pixel_offset_table,
+            compressed_sample_data_le,
+        }),
+        BlockDescription::Tiles(_) => CompressedBlock::DeepTile(CompressedDeepTileBlock {
+            coordinates: head.tile,
+            decompressed_sample_data_size,
+            compressed_pixel_offset_table,
+            compressed_sample_data_le,
+        }),
     }
 }
 

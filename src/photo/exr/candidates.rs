@@ -1,5 +1,7 @@
 //! What in a file may be the picture.
 
+use std::borrow::Cow;
+
 use exr::meta::header::Header;
 use rustc_hash::FxHashMap;
 
@@ -12,8 +14,10 @@ pub(super) const FINISHED: [&str; 11] =
 
 /// Channels of one layer in one part.
 pub(super) struct Group {
-    part: usize,
+    pub part: usize,
     pub names: Names,
+    /// Indices of its channels.
+    channels: Vec<usize>,
     /// Indices of the channels that mean something, by [`Slot`].
     slots: [Option<usize>; Slot::ALL],
 }
@@ -79,9 +83,11 @@ pub(super) fn groups(headers: &[Header], part: usize) -> Vec<Group> {
         let name = text(&channel.name);
         let (prefix, own) = split(&name);
         let at = *known.entry(prefix.to_owned()).or_insert_with(|| {
-            groups.push(Group { part, names: Names::new(headers, part, prefix), slots: Default::default() });
+            let names = Names::new(headers, part, prefix);
+            groups.push(Group { part, names, channels: Vec::new(), slots: Default::default() });
             groups.len() - 1
         });
+        groups[at].channels.push(index);
         if let Some((slot, short)) = Slot::of(own) {
             let slot = &mut groups[at].slots[slot as usize];
             if short || slot.is_none() {
@@ -103,6 +109,11 @@ impl Group {
 
     fn has_any(&self, slots: &[Slot]) -> bool {
         slots.iter().any(|&slot| self.get(slot).is_some())
+    }
+
+    /// What its channels are called.
+    pub fn channel_names<'h>(&self, headers: &'h [Header]) -> Vec<Cow<'h, str>> {
+        self.channels.iter().map(|&index| text(&headers[self.part].channels.list[index].name)).collect()
     }
 
     /// Channels as roles, with the alpha beside them.
@@ -180,7 +191,7 @@ pub(super) fn scattered<'g>(headers: &[Header], groups: &'g [Group]) -> Option<C
 }
 
 /// Channels that stand alone.
-pub(super) fn lone<'g>(headers: &[Header], groups: &'g [Group]) -> Vec<Candidate<'g>> {
+pub(super) fn lone(groups: &[Group]) -> Vec<Candidate<'_>> {
     let grey = |rank, group, taken| Candidate { rank, colours: Colours::Grey, from: vec![(group, taken)] };
     let mut colours = FxHashMap::default();
     for slot in Slot::RGB {
@@ -189,18 +200,19 @@ pub(super) fn lone<'g>(headers: &[Header], groups: &'g [Group]) -> Vec<Candidate
     }
     // Two or three of R, G, B are a picture that is not whole.
     let one = |group: &&Group| colours.get(&*group.names.prefix) == Some(&1) && group.has_any(&Slot::RGB);
-    let red = |group: &'g Group| grey(NO_PICTURE, group, group.take(&Slot::RGB.map(|slot| (slot, Role::Luminance))));
+    let red = |group| grey(NO_PICTURE, group, group.take(&Slot::RGB.map(|slot| (slot, Role::Luminance))));
     let found: Vec<Candidate> = groups.iter().filter(one).map(red).collect();
     if !found.is_empty() {
         return found;
     }
-    let count: usize = headers.iter().map(|header| header.channels.list.len()).sum();
+    let count: usize = groups.iter().map(|group| group.channels.len()).sum();
     let alphas: Vec<&Group> = groups.iter().filter(|group| group.has(&[Slot::Alpha])).collect();
     let only = match (count, groups, &alphas[..]) {
-        (1, [group], _) => Some((group, 0, None)),
+        (1, [group], _) => Some((group, group.channels[0], None)),
         (2, [group], [_]) => {
             let alpha = group.get(Slot::Alpha);
-            Some((group, usize::from(alpha == Some(0)), alpha))
+            let other = group.channels.iter().find(|&&index| Some(index) != alpha);
+            other.map(|&index| (group, index, alpha))
         }
         _ => None,
     };

@@ -11,14 +11,16 @@
 //! 5. Y of any layer or part; X, Y, Z without a layer's name, which are taken for CIE XYZ;
 //! 6. the one of R, G, B that a layer has, or the file's only channel, as grey.
 //!
-//! Of a stereo file the first view comes before the others. Alpha is the A or alpha beside the colours.
+//! Of a stereo file the first view comes before the others. Alpha is the A or alpha beside the colours. Parts that are data by their
+//! `colorInteropID` are no picture. Where a part or a layer is asked for, only its channels count ([`pick`]).
 
 use exr::meta::attribute::{ChannelDescription, SampleType};
 use exr::meta::header::Header;
 
-use super::super::Reason;
+use super::super::{ReadOptions, Reason};
 use super::candidates::{Candidate, Group, NO_PICTURE, Slot, candidate, groups, lone, scattered};
-use super::names::{self, list, text};
+use super::names::{self, list};
+use super::pick::pick;
 
 /// The parts and the channels that the photo's pixels are made of.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -76,19 +78,19 @@ pub(super) struct Choice {
     pub notes: Vec<String>,
 }
 
-/// Finds the picture.
+/// Finds the picture, in the part and the layer that are asked for.
 ///
 /// # Errors
-/// Where nothing can be it.
-pub(super) fn choose(headers: &[Header]) -> Result<Choice, Reason> {
-    let groups: Vec<Group> = (0..headers.len()).flat_map(|part| groups(headers, part)).collect();
-    let mut candidates: Vec<Candidate> = groups.iter().filter_map(|group| candidate(headers, group)).collect();
-    if let Some(scattered) = scattered(headers, &groups) {
-        candidates.push(scattered);
+/// Where nothing can be it, or there is no such part or layer.
+pub(super) fn choose(headers: &[Header], options: &ReadOptions) -> Result<Choice, Reason> {
+    let flat = (0..headers.len()).filter(|&part| !headers[part].deep);
+    let all: Vec<Group> = flat.flat_map(|part| groups(headers, part)).collect();
+    if all.is_empty() && headers.iter().any(|header| header.deep) {
+        return Err("it holds deep data, which vglare does not read".into());
     }
-    if candidates.is_empty() {
-        candidates = lone(headers, &groups);
-    }
+    let pictures = all.iter().filter(|group| candidate(headers, group).is_some()).count();
+    let groups = pick(headers, all, options)?;
+    let candidates = candidates(headers, &groups);
     let hero = names::hero(headers).or_else(|| groups.iter().find_map(|group| group.names.view.clone()));
     let key = |c: &Candidate| {
         let view = &c.from[0].0.names.view;
@@ -107,14 +109,23 @@ pub(super) fn choose(headers: &[Header]) -> Result<Choice, Reason> {
     }
     notes.extend(best.other_views(&candidates));
     notes.extend(best.doubts(headers));
-    let name = (candidates.len() > 1).then(|| best.name(headers));
+    let name = (pictures.max(candidates.len()) > 1).then(|| best.name(headers));
     Ok(Choice { layer: best.layer(headers), name, notes })
+}
+
+/// All that may be the picture.
+fn candidates<'g>(headers: &[Header], groups: &'g [Group]) -> Vec<Candidate<'g>> {
+    let mut candidates: Vec<_> = groups.iter().filter_map(|group| candidate(headers, group)).collect();
+    candidates.extend(scattered(headers, groups));
+    if candidates.is_empty() { lone(groups) } else { candidates }
 }
 
 /// Why nothing is the picture.
 fn nothing(headers: &[Header], groups: &[Group]) -> Reason {
-    let channels = headers.iter().flat_map(|header| &header.channels.list).map(|channel| text(&channel.name));
-    let names: Vec<_> = channels.collect();
+    let names: Vec<_> = groups.iter().flat_map(|group| group.channel_names(headers)).collect();
+    if names.is_empty() {
+        return "its parts are data and no picture, by their colorInteropID".into();
+    }
     let listed = list(names.iter().map(|name| &**name), 10);
     if Slot::RGB.iter().all(|&slot| groups.iter().any(|group| group.has(&[slot]))) {
         return format!(
@@ -170,6 +181,10 @@ mod tests {
         let mut header = Header::new(Text::from("x"), (1, 1), list);
         header.own_attributes.layer_name = name.map(Text::from);
         header
+    }
+
+    fn choose(headers: &[Header]) -> Result<Choice, Reason> {
+        super::choose(headers, &ReadOptions::default())
     }
 
     fn chosen(headers: &[Header]) -> (usize, String) {

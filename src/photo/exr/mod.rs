@@ -2,29 +2,35 @@
 //!
 //! | module | what |
 //! | --- | --- |
-//! | `names`, `candidates`, `layer` | which channels are the picture |
+//! | `names`, `candidates`, `pick`, `layer` | which channels are the picture |
 //! | `blocks` | the file as a container: where its compressed blocks are, and which are missing |
 //! | `guard` | whether a block can be what it says |
 //! | `unpack` | a block's bytes, by the decoders of the `exr` crate |
 //! | `picture` | blocks into pixels and kept channels; with `lines` and `chroma` |
-//! | `camera` | what attributes say of the field of view |
-//! | `read`, `write` | a file into a photo, and back |
+//! | `attributes`, `camera`, `colour` | what attributes say: of how the file was made, the field of view, the colour space |
+//! | `encoding` | how a picture that has changed is compressed |
+//! | `read`, `write`, `container` | a file into a photo, and back |
 //!
 //! One layer becomes the photo's pixels ([`layer`]). The other channels of its part are kept as bytes, the other parts
 //! as the compressed chunks that they are in the file, and the headers whole, so that [`write()`] can put all of it
-//! back. Of a part with resolution levels only the largest level is kept: the others would show the picture without
-//! its glare. A lossy compression becomes ZIP: the pixels would suffer twice. A picture with subsampled channels goes
-//! back as the chunks that it came in if it is still the same; else its colours become R, G, B of full resolution.
-//! Deep data is refused.
+//! back. A picture that is compressed with loss, subsampled or in levels goes back as the chunks that it came in if it is
+//! still the same. Once it has changed, it is compressed as it was, unless other channels of its part would lose by it; colours
+//! become R, G, B of full resolution, and of levels only the largest is left: the others would show the picture without its glare.
+//! Parts of deep data are no picture, and copied as they are.
 
+mod attributes;
 mod blocks;
 mod camera;
 mod candidates;
 mod chroma;
+mod colour;
+mod container;
+mod encoding;
 mod guard;
 mod layer;
 mod lines;
 mod names;
+mod pick;
 mod picture;
 mod read;
 mod unpack;
@@ -36,12 +42,14 @@ use exr::block::chunk::Chunk;
 use exr::compression::Compression;
 use exr::math::Vec2;
 use exr::meta::attribute::{ChannelDescription, ChannelList, LineOrder, SampleType};
+use exr::meta::header::Header;
 use exr::meta::{BlockDescription, Headers};
+use rustc_hash::FxHashSet;
 
 pub(super) use read::read;
 pub(super) use write::write;
 
-use super::{Primaries, Reason};
+use super::{Part, Reason};
 use layer::{Colours, Layer, Member, Role};
 use picture::Planes;
 
@@ -62,6 +70,29 @@ pub(super) struct Rest {
 }
 
 impl Rest {
+    /// What the file's parts are called, and their channels.
+    pub fn parts(&self) -> Vec<Part> {
+        let of = |header: &Header| {
+            let channels: Vec<String> =
+                header.channels.list.iter().map(|channel| names::text(&channel.name).into_owned()).collect();
+            let (mut layers, mut known) = (Vec::new(), FxHashSet::default());
+            for name in &channels {
+                let layer = names::split(name).0.trim_end_matches('.');
+                if known.insert(layer) {
+                    layers.push(layer.to_owned());
+                }
+            }
+            let name = header.own_attributes.layer_name.as_ref().map(|name| names::text(name).into_owned());
+            Part { name, layers, channels }
+        };
+        self.headers.iter().map(of).collect()
+    }
+
+    /// Whether the picture is CIE XYZ.
+    pub fn is_xyz(&self) -> bool {
+        self.layer.colours == Colours::Xyz
+    }
+
     /// Leaves so many columns and rows at each edge out of the display window, which they do not fill.
     pub fn overscan(&mut self, [columns, rows]: [u32; 2]) {
         for header in &mut self.headers {
@@ -73,15 +104,10 @@ impl Rest {
 
     /// What a picture beside the photo, of the same frame, three colours and no alpha, takes over: the attributes of the
     /// photo's part and of its file. Not its other channels and parts, nor what is said of those or shows the photo.
-    pub fn attributes_only(&self, primaries: Option<Primaries>) -> Self {
+    pub fn attributes_only(&self) -> Self {
         let mut header = self.headers[self.layer.part()].clone();
         let colour = |name| ChannelDescription::named(name, SampleType::F32);
         header.channels = ChannelList::new(["B", "G", "R"].into_iter().map(colour).collect());
-        // Pixels may have been taken for other primaries than the file names.
-        let named = header.shared_attributes.chromaticities.map(read::primaries);
-        if named.and_then(Primaries::other_than_rec709) != primaries {
-            header.shared_attributes.chromaticities = primaries.map(write::chromaticities);
-        }
         (header.own_attributes.preview, header.own_attributes.multi_view_names) = (None, None);
         let header = header.with_encoding(Compression::RLE, BlockDescription::ScanLines, LineOrder::Increasing);
         let roles = [2, 1, 0].map(Role::Component).to_vec();

@@ -17,7 +17,7 @@ pub(super) struct Names {
     /// The view that the channels are of.
     pub view: Option<String>,
     /// The part's name, as it stands.
-    part: Option<String>,
+    pub part: Option<String>,
 }
 
 impl Names {
@@ -46,6 +46,11 @@ impl Names {
         let layer = words.last().copied().unwrap_or_default().to_lowercase();
         let part = own.layer_name.as_ref().map(|name| text(name).into_owned());
         Self { prefix: prefix.to_owned(), layer, view, part }
+    }
+
+    /// What the channels' names begin with, without the dot.
+    pub fn layer_name(&self) -> &str {
+        self.prefix.strip_suffix('.').unwrap_or(&self.prefix)
     }
 
     /// The part's name where there are several, and the layer's; none where there is neither.

@@ -15,6 +15,8 @@ use super::super::luminance::Said;
 use super::super::read::check_size;
 use super::super::{Alpha, Depth, Format, Photo, Primaries, ReadOptions, Reason, Source};
 use super::blocks::{Block, Blocks};
+use super::colour::{self, Told};
+use super::encoding;
 use super::layer::{Choice, Colours, Layer, choose};
 use super::picture::Picture;
 use super::unpack::{is_plain, unpack};
@@ -35,18 +37,20 @@ const LEAST_GREEN: f64 = 1e-3;
 pub fn read(reader: impl BufRead + Seek, options: &ReadOptions) -> Result<Photo, Reason> {
     let mut blocks = Blocks::open(reader)?;
     let headers = blocks.meta.headers.clone();
-    let Choice { layer, name, mut notes } = choose(&headers)?;
+    let Choice { layer, name, mut notes } = choose(&headers, options)?;
     let (source, doubts) = source(&layer, &headers, options);
     notes.extend(doubts);
     let mut picture = Picture::new(&layer, &headers)?;
-    let wanted = |part: usize, tile: TileCoordinates| layer.member(part).is_none() || tile.level_index == Vec2(0, 0);
-    let gaps = blocks.find(wanted)?;
+    let is_whole = |tile: TileCoordinates| tile.level_index == Vec2(0, 0);
+    let gaps = blocks.find(|part, tile| layer.member(part).is_none() || is_whole(tile))?;
     let has_gaps = gaps.is_some();
     if let Some(gaps) = gaps {
         notes.push(gaps.answer(options.missing)?);
     }
-    let is_subsampled = layer.members.iter().any(|member| !is_plain(&headers[member.part].channels));
-    let is_kept = !has_gaps && (is_subsampled || layer.colours == Colours::LumaChroma);
+    // Where it could not be written again as it is.
+    let mut parts = layer.members.iter().map(|member| &headers[member.part]);
+    let keeps = !has_gaps && (layer.colours == Colours::LumaChroma || parts.any(|header| !is_written_again(header)));
+    let wanted = |part: usize, tile: TileCoordinates| keeps || layer.member(part).is_none() || is_whole(tile);
     let mut chunks = Vec::new();
     let batch = BLOCKS_A_THREAD * rayon::current_num_threads();
     loop {
@@ -58,18 +62,20 @@ pub fn read(reader: impl BufRead + Seek, options: &ReadOptions) -> Result<Photo,
         let (main, others): (Vec<_>, Vec<_>) =
             read.into_iter().partition(|block| layer.member(block.chunk.layer_index).is_some());
         chunks.extend(others.into_iter().map(|block| (block.index, block.chunk)));
-        if is_kept {
+        if keeps {
             chunks.extend(main.iter().map(|block| (block.index, block.chunk.clone())));
         }
-        insert(&mut picture, &layer, &headers, main.into_iter().map(|block| (block.tile, block.chunk)).collect())?;
+        let main = main.into_iter().filter(|block| is_whole(block.tile));
+        insert(&mut picture, &layer, &headers, main.map(|block| (block.tile, block.chunk)).collect())?;
     }
     chunks.extend(absent(&blocks, &layer, &headers, has_gaps)?);
+    let is_kept = keeps && layer.members.iter().all(|member| blocks.absent(member.part).next().is_none());
+    if !is_kept {
+        chunks.retain(|(_, chunk)| layer.member(chunk.layer_index).is_none());
+    }
     let weights = luminance_weights(source.primaries, options);
     let (pixels, planes) = picture.finish(weights, has_gaps);
     let frame = frame(&headers[layer.part()])?;
-    let is_main = |part| layer.member(part).is_some();
-    let levels = |(part, header)| if is_main(part) { largest_level(header) } else { header };
-    let headers = headers.into_iter().enumerate().map(levels).collect();
     let rest = Rest { headers, layer, planes, chunks, weights, is_kept };
     Ok(Photo { frame, pixels, source: Source { exr: Some(Arc::new(rest)), picture: name, notes, ..source } })
 }
@@ -158,19 +164,7 @@ fn source(layer: &Layer, headers: &[Header], options: &ReadOptions) -> (Source, 
         notes.push(format!("its pixelAspectRatio, {aspect}, makes no sense: its pixels are taken for square"));
         1.0
     };
-    // Writers of several parts do not always repeat what is the same in all.
-    let mut all = std::iter::once(header).chain(headers);
-    let chromaticities = all.find_map(|header| header.shared_attributes.chromaticities).map(primaries);
-    let primaries = match chromaticities {
-        _ if layer.colours == Colours::Xyz => Some(Primaries::XYZ),
-        Some(primaries) if primaries.sound().is_none() => {
-            if options.primaries.is_none() {
-                notes.push("its chromaticities span no colour space: its colours are taken for Rec.709's".to_owned());
-            }
-            None
-        }
-        chromaticities => chromaticities.and_then(Primaries::other_than_rec709),
-    };
+    let (primaries, known) = colours(layer, headers, options, &mut notes);
     if layer.colours == Colours::LumaChroma {
         notes.push(
             "it holds luminance and chroma (Y, RY, BY), which are written as R, G, B once they change".to_owned(),
@@ -182,12 +176,36 @@ fn source(layer: &Layer, headers: &[Header], options: &ReadOptions) -> (Source, 
         alpha: if layer.has_alpha() { Alpha::Premultiplied } else { Alpha::None },
         grey: layer.colours == Colours::Grey,
         primaries,
+        knows_primaries: known,
         pixel_aspect,
         luminance: luminance(header),
         camera: camera::of(header),
         ..Source::plain()
     };
     (source, notes)
+}
+
+/// The primaries, where they are not Rec.709's, and whether the file says what they are.
+fn colours(
+    layer: &Layer,
+    headers: &[Header],
+    options: &ReadOptions,
+    notes: &mut Vec<String>,
+) -> (Option<Primaries>, bool) {
+    if layer.colours == Colours::Xyz {
+        return (Some(Primaries::XYZ), true);
+    }
+    let main = std::iter::once(&headers[layer.part()]);
+    let doubt = match colour::told(&main.chain(headers).collect::<Vec<_>>()) {
+        Told::Nothing => return (None, false),
+        Told::Primaries(primaries) if primaries.sound().is_some() => return (primaries.other_than_rec709(), true),
+        Told::Primaries(_) => "its chromaticities span no colour space".to_owned(),
+        Told::Unknown(id) => format!("its colorInteropID, {id}, is no linear space that vglare knows"),
+    };
+    if options.primaries.is_none() {
+        notes.push(format!("{doubt}: its colours are taken for Rec.709's, scene-linear"));
+    }
+    (None, false)
 }
 
 /// cd/m² of (1, 1, 1) by `whiteLuminance`, one of OpenEXR's standard attributes, where the part has it.
@@ -207,7 +225,17 @@ fn luminance_weights(primaries: Option<Primaries>, options: &ReadOptions) -> [f6
     if weights[1] < LEAST_GREEN { Primaries::REC709.luminance_weights() } else { weights }
 }
 
-fn largest_level(header: Header) -> Header {
+/// Whether blocks that are decompressed and compressed again are the same: nothing is lost by it, subsampled, or of another level.
+fn is_written_again(header: &Header) -> bool {
+    let one_level = match header.blocks {
+        BlockDescription::Tiles(tiles) => tiles.level_mode == LevelMode::Singular,
+        BlockDescription::ScanLines => true,
+    };
+    one_level && is_plain(&header.channels) && !encoding::may_lose(header.compression)
+}
+
+/// The header of a part's largest level alone: the others would show the picture without its glare.
+pub(super) fn largest_level(header: Header) -> Header {
     match header.blocks {
         BlockDescription::Tiles(mut tiles) if tiles.level_mode != LevelMode::Singular => {
             tiles.level_mode = LevelMode::Singular;

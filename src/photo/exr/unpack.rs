@@ -60,11 +60,12 @@ pub(super) fn is_plain(channels: &ChannelList) -> bool {
     channels.list.iter().all(|channel| channel.sampling == Vec2(1, 1))
 }
 
-/// The headers as if no channel were subsampled, which the crate's checks turn down.
-pub(super) fn unsampled(headers: &Headers) -> Headers {
+/// The headers as if no channel were subsampled and no part deep, which the crate's checks turn down.
+pub(super) fn plain(headers: &Headers) -> Headers {
     let mut headers = headers.clone();
     for header in &mut headers {
         header.channels.list.iter_mut().for_each(|channel| channel.sampling = Vec2(1, 1));
+        header.deep = false;
     }
     headers
 }

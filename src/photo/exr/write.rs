@@ -1,26 +1,24 @@
 //! A photo into an OpenEXR file.
 
-use std::io::{Seek, SeekFrom, Write};
+use std::io::{Seek, Write};
 
 use exr::block::chunk::{Chunk, CompressedBlock, CompressedScanLineBlock, CompressedTileBlock, TileCoordinates};
 use exr::compression::Compression;
 use exr::math::Vec2;
-use exr::meta::attribute::{
-    ChannelDescription, ChannelList, Chromaticities, IntegerBounds, LineOrder, SampleType, Text,
-};
+use exr::meta::attribute::{ChannelDescription, ChannelList, IntegerBounds, LineOrder, SampleType, Text};
 use exr::meta::header::{Header, ImageAttributes, LayerAttributes};
-use exr::meta::{BlockDescription, Headers, MetaData, TileIndices, magic_number};
-use glam::DVec2;
+use exr::meta::{BlockDescription, Headers, TileIndices};
 use rayon::prelude::*;
 
 use super::super::luminance::Said;
 use super::super::{Alpha, Depth, Photo, Primaries, Reason, display};
+use super::container::Container;
 use super::layer::{Member, Role};
 use super::lines::Scratch;
 use super::picture::{Picture, Planes};
-use super::read::{frame, insert};
-use super::unpack::{self, is_plain, lines, pack, unsampled};
-use super::{Rest, explain, guard};
+use super::read::{frame, insert, largest_level};
+use super::unpack::{self, lines, pack};
+use super::{Rest, attributes, colour, encoding, explain, guard};
 use crate::frame::Frame;
 
 /// Blocks that are compressed together.
@@ -29,8 +27,10 @@ const BLOCKS_A_THREAD: usize = 4;
 /// What a channel of the picture's parts is filled with.
 #[derive(Clone, Copy)]
 struct Fill<'p> {
-    /// Component of the photo's pixels; none for a channel that is carried.
+    /// Component of the photo's pixels, or of a layer's; none for a channel that is carried.
     component: Option<usize>,
+    /// Of which layer beside the picture; none for the picture itself.
+    layer: Option<usize>,
     /// The bytes that the input had.
     was: Option<&'p [u8]>,
 }
@@ -48,29 +48,39 @@ pub fn write(writer: impl Write + Seek, photo: &Photo, depth: Depth) -> Result<(
     let Some(rest) = photo.source.exr.as_deref() else {
         let mut header = plain_header(photo);
         say_luminance(&mut header, photo);
-        let channels = with_depth(plain_channels(photo), depth);
+        attributes::tell_origin(&mut header, photo.source.made.as_deref());
+        let channels = beside(with_depth(plain_channels(photo), depth), photo);
         let main = Main::new(photo, 0, channels, &mut header);
         if photo.source.quick {
             header = quickly(header, depth);
         }
-        return Container::new(writer, Headers::from_elem(header, 1))?.finish(&[main], &[]);
+        return Container::new(writer, Headers::from_elem(header, 1))?
+            .finish(&[], |container, _| main.write(container));
     };
     let mut headers = rest.headers.clone();
     check_window(photo, &headers[rest.layer.part()])?;
-    rest.layer.members.iter().for_each(|member| say_luminance(&mut headers[member.part], photo));
+    colour::tag(&mut headers, &rest.layer, &photo.source);
+    for member in &rest.layer.members {
+        say_luminance(&mut headers[member.part], photo);
+        attributes::tell_origin(&mut headers[member.part], photo.source.made.as_deref());
+    }
     let is_main = |chunk: &Chunk| rest.layer.member(chunk.layer_index).is_some();
-    if rest.is_kept && depth == photo.source.depth && is_unchanged(photo, rest)? {
+    if rest.is_kept && depth == photo.source.depth && photo.source.beside.is_empty() && is_unchanged(photo, rest)? {
         let chunks: Vec<_> = rest.chunks.iter().collect();
-        return Container::new(writer, headers)?.finish(&[], &chunks);
+        return Container::new(writer, headers)?.finish(&chunks, |_, _| Ok(()));
     }
     let grey = display::is_grey(photo);
     let mut mains = Vec::new();
-    for (member, planes) in rest.layer.members.iter().zip(&rest.planes) {
+    for (index, (member, planes)) in rest.layer.members.iter().zip(&rest.planes).enumerate() {
         let header = &mut headers[member.part];
+        *header = largest_level(header.clone());
         let mut channels = carried_channels(header, member, planes, grey);
         // Only a depth other than the input's changes a channel: the input's may differ among themselves.
         if depth != photo.source.depth {
             channels = with_depth(channels, depth);
+        }
+        if index == 0 {
+            channels = beside(channels, photo);
         }
         mains.push(Main::new(photo, member.part, channels, header));
         if photo.source.quick {
@@ -78,7 +88,9 @@ pub fn write(writer: impl Write + Seek, photo: &Photo, depth: Depth) -> Result<(
         }
     }
     let chunks: Vec<_> = rest.chunks.iter().filter(|(_, chunk)| !is_main(chunk)).collect();
-    Container::new(writer, headers)?.finish(&mains, &chunks)
+    Container::new(writer, headers)?.finish(&chunks, |container, part| {
+        mains.iter().find(|main| main.part == part).map_or(Ok(()), |main| main.write(container))
+    })
 }
 
 /// Says what white is in cd/m², where that is known and one number says it: `whiteLuminance`.
@@ -95,8 +107,10 @@ fn is_unchanged(photo: &Photo, rest: &Rest) -> Result<bool, Reason> {
     let of_picture = rest.chunks.iter().filter(|(_, chunk)| rest.layer.member(chunk.layer_index).is_some());
     let mut blocks = Vec::new();
     for (_, chunk) in of_picture {
-        let header = &rest.headers[chunk.layer_index];
-        blocks.push((header.get_block_data_indices(&chunk.compressed_block).map_err(explain)?, chunk.clone()));
+        let tile = rest.headers[chunk.layer_index].get_block_data_indices(&chunk.compressed_block).map_err(explain)?;
+        if tile.level_index == Vec2(0, 0) {
+            blocks.push((tile, chunk.clone()));
+        }
     }
     insert(&mut picture, &rest.layer, &rest.headers, blocks)?;
     let (pixels, _) = picture.finish(rest.weights, false);
@@ -117,19 +131,16 @@ fn plain_header(photo: &Photo) -> Header {
     let (frame, window) = (photo.frame, photo.frame.window);
     let size = Vec2(window.width as usize, window.height as usize);
     let bounds = IntegerBounds::new((0, 0), (frame.width as usize, frame.height as usize));
-    let chromaticities = photo.source.primaries.map(chromaticities);
     let pixel_aspect = photo.source.pixel_aspect as f32;
     let place = LayerAttributes { layer_position: Vec2(window.x, window.y), ..LayerAttributes::default() };
-    Header::new(Text::from("picture"), size, Default::default())
+    let mut header = Header::new(Text::from("picture"), size, Default::default())
         .with_encoding(Compression::ZIP16, BlockDescription::ScanLines, LineOrder::Increasing)
         .with_attributes(place)
-        .with_shared_attributes(ImageAttributes { chromaticities, pixel_aspect, ..ImageAttributes::new(bounds) })
-}
-
-pub(super) fn chromaticities(primaries: Primaries) -> Chromaticities {
-    let point = |p: DVec2| Vec2(p.x as f32, p.y as f32);
-    let Primaries { red, green, blue, white } = primaries;
-    Chromaticities { red: point(red), green: point(green), blue: point(blue), white: point(white) }
+        .with_shared_attributes(ImageAttributes { pixel_aspect, ..ImageAttributes::new(bounds) });
+    if photo.source.knows_primaries || photo.source.primaries.is_some() {
+        colour::say(&mut header, photo.source.primaries.unwrap_or(Primaries::REC709));
+    }
+    header
 }
 
 /// For a picture that is smooth and was computed, so that the last bits of its floats are noise: at 1920 × 1080 on two
@@ -140,19 +151,6 @@ fn quickly(header: Header, depth: Depth) -> Header {
     header.with_encoding(compression, BlockDescription::ScanLines, LineOrder::Increasing)
 }
 
-fn without_loss(header: Header) -> Header {
-    let lossless = |c: &ChannelDescription| header.compression.is_lossless_for(c.sample_type);
-    // PXR24 and B44A keep some types, but not every NaN.
-    let keeps = header.channels.list.iter().all(lossless) && header.compression.preserves_nan_bits();
-    // What sees a block as bytes alone does not mind subsampling.
-    let by_bytes = [Compression::Uncompressed, Compression::RLE, Compression::ZIP1, Compression::ZIP16];
-    if keeps && (is_plain(&header.channels) || by_bytes.contains(&header.compression)) {
-        return header;
-    }
-    let (blocks, order) = (header.blocks, header.line_order);
-    header.with_encoding(Compression::ZIP16, blocks, order)
-}
-
 type Channels<'p> = Vec<(ChannelDescription, Fill<'p>)>;
 
 /// The picture's channels by another depth.
@@ -161,8 +159,20 @@ fn with_depth(mut channels: Channels, depth: Depth) -> Channels {
         Depth::Half => SampleType::F16,
         _ => SampleType::F32,
     };
-    for (channel, fill) in channels.iter_mut().filter(|(_, fill)| fill.component.is_some()) {
+    for (channel, fill) in channels.iter_mut().filter(|(_, fill)| fill.component.is_some() && fill.layer.is_none()) {
         (channel.sample_type, fill.was) = (kind, None);
+    }
+    channels
+}
+
+/// The same with the layers beside the picture, in place of channels that are called as theirs.
+fn beside<'p>(mut channels: Channels<'p>, photo: &Photo) -> Channels<'p> {
+    for (layer, of) in photo.source.beside.iter().enumerate() {
+        for (component, colour) in ["R", "G", "B"].into_iter().enumerate() {
+            let channel = ChannelDescription::named(&*format!("{}.{colour}", of.name), SampleType::F32);
+            channels.retain(|(known, _)| known.name != channel.name);
+            channels.push((channel, Fill { component: Some(component), layer: Some(layer), was: None }));
+        }
     }
     channels
 }
@@ -170,28 +180,29 @@ fn with_depth(mut channels: Channels, depth: Depth) -> Channels {
 fn plain_channels<'p>(photo: &Photo) -> Channels<'p> {
     let colours: &[(&str, usize)] = if display::is_grey(photo) { &[("Y", 0)] } else { &[("B", 2), ("G", 1), ("R", 0)] };
     let alpha = (photo.source.alpha != Alpha::None).then_some(("A", 3));
-    let fill = |component| Fill { component: Some(component), was: None };
+    let fill = |component| Fill { component: Some(component), layer: None, was: None };
     let named = alpha.into_iter().chain(colours.iter().copied());
     named.map(|(name, component)| (ChannelDescription::named(name, SampleType::F32), fill(component))).collect()
 }
 
 /// The channels of a part of the picture, where all that is of the picture gets its pixels' full resolution.
 fn carried_channels<'p>(header: &Header, member: &Member, planes: &'p Planes, grey: bool) -> Channels<'p> {
+    let fill = |component, was| Fill { component, layer: None, was };
     let mut channels = Vec::new();
     for ((channel, &role), plane) in header.channels.list.iter().zip(&member.roles).zip(planes) {
         let was = plane.as_deref();
         let full = ChannelDescription { sampling: Vec2(1, 1), ..channel.clone() };
         match role {
-            Role::Other => channels.push((channel.clone(), Fill { component: None, was })),
-            Role::Component(component) => channels.push((full, Fill { component: Some(component), was })),
-            Role::Luminance if grey => channels.push((full, Fill { component: Some(0), was })),
+            Role::Other => channels.push((channel.clone(), fill(None, was))),
+            Role::Component(component) => channels.push((full, fill(Some(component), was))),
+            Role::Luminance if grey => channels.push((full, fill(Some(0), was))),
             // Luminance that has got a colour becomes three channels.
             Role::Luminance => {
                 for (component, name) in ["R", "G", "B"].iter().enumerate() {
                     let name = Text::from(format!("{}{name}", member.prefix).as_str());
-                    let fill = Fill { component: Some(component), was: None };
                     let quantize_linearly = false;
-                    channels.push((ChannelDescription { name, quantize_linearly, ..full.clone() }, fill));
+                    let channel = ChannelDescription { name, quantize_linearly, ..full.clone() };
+                    channels.push((channel, fill(Some(component), None)));
                 }
             }
             Role::Chroma(_) => {}
@@ -204,9 +215,12 @@ impl<'p> Main<'p> {
     /// A part whose header gets these channels, sorted by name as the format wants it.
     fn new(photo: &'p Photo, part: usize, mut channels: Channels<'p>, header: &mut Header) -> Self {
         channels.sort_by(|(a, _), (b, _)| a.name.as_slice().cmp(b.name.as_slice()));
-        let (list, fills): (Vec<_>, _) = channels.into_iter().unzip();
+        let (list, fills): (Vec<_>, Vec<Fill>) = channels.into_iter().unzip();
+        let was_subsampled = !unpack::is_plain(&header.channels);
         header.channels = ChannelList::new(list.into_iter().collect());
-        *header = without_loss(header.clone());
+        // Carried channels, alpha, layers that are to add up, and colours that have been compressed in another form.
+        let stays = |fill: &Fill| was_subsampled || fill.layer.is_some() || matches!(fill.component, None | Some(3));
+        *header = encoding::of_changed(header.clone(), |channel| stays(&fills[channel]));
         Self { photo, part, fills, premultiply: photo.source.alpha == Alpha::Straight }
     }
 
@@ -238,9 +252,11 @@ impl<'p> Main<'p> {
             let was = fill.was.map(|was| &was[start * kind.bytes_per_sample()..][..value.len()]);
             match (fill.component, was) {
                 (Some(component), was) => {
-                    let pixels = &self.photo.pixels[start..start + line.count];
+                    let own = &self.photo.pixels[start..][..line.count];
+                    let layer = fill.layer.map(|layer| &self.photo.source.beside[layer].pixels[start..][..line.count]);
+                    let pixels = layer.unwrap_or(own).iter().zip(own);
                     scratch.float.clear();
-                    scratch.float.extend(pixels.iter().map(|pixel| self.sample(pixel, component)));
+                    scratch.float.extend(pixels.map(|(pixel, own)| self.sample(pixel, component, own[3])));
                     scratch.store(value, kind, was);
                 }
                 (None, Some(was)) => value.copy_from_slice(was),
@@ -250,8 +266,8 @@ impl<'p> Main<'p> {
         bytes
     }
 
-    fn sample(&self, pixel: &[f32; 4], component: usize) -> f32 {
-        if self.premultiply && component < 3 { pixel[component] * pixel[3] } else { pixel[component] }
+    fn sample(&self, pixel: &[f32; 4], component: usize, alpha: f32) -> f32 {
+        if self.premultiply && component < 3 { pixel[component] * alpha } else { pixel[component] }
     }
 }
 
@@ -266,6 +282,9 @@ pub(super) fn zero_chunk(
     budget: &mut usize,
 ) -> Result<Chunk, Reason> {
     let header = &headers[part];
+    if header.deep {
+        return Err("the file is unfinished, and its deep data cannot be filled".into());
+    }
     let area = header.get_absolute_block_pixel_coordinates(tile).map_err(explain)?;
     let bytes = unpack::size(&header.channels, area);
     *budget =
@@ -286,63 +305,4 @@ fn chunk(header: &Header, part: usize, tile: TileCoordinates, area: IntegerBound
         }
     };
     Chunk { layer_index: part, compressed_block }
-}
-
-/// The file to be: the crate's own writer turns down subsampled channels.
-struct Container<W> {
-    writer: W,
-    headers: Headers,
-    /// Where the table begins, and what it will hold.
-    table: (u64, Vec<Vec<u64>>),
-    position: u64,
-}
-
-impl<W: Write + Seek> Container<W> {
-    /// Writes the headers.
-    fn new(mut writer: W, headers: Headers) -> Result<Self, Reason> {
-        let requirements = MetaData::validate(&unsampled(&headers), false).map_err(explain)?;
-        magic_number::write(&mut writer).map_err(explain)?;
-        requirements.write(&mut writer).map_err(explain)?;
-        Header::write_all(&headers, &mut writer, requirements.has_multiple_layers).map_err(explain)?;
-        let start = writer.stream_position()?;
-        let table: Vec<Vec<u64>> = headers.iter().map(|header| vec![0; header.chunk_count]).collect();
-        let count: usize = table.iter().map(Vec::len).sum();
-        writer.write_all(&vec![0; count * size_of::<u64>()])?;
-        let position = start + (count * size_of::<u64>()) as u64;
-        Ok(Self { writer, headers, table: (start, table), position })
-    }
-
-    fn put(&mut self, index: usize, chunk: &Chunk) -> Result<(), Reason> {
-        self.table.1[chunk.layer_index][index] = self.position;
-        chunk.write(&mut self.writer, self.headers.len()).map_err(explain)?;
-        let part = if self.headers.len() > 1 { 4 } else { 0 };
-        let (place, bytes) = match &chunk.compressed_block {
-            CompressedBlock::ScanLine(block) => (4, block.compressed_pixels_le.len()),
-            CompressedBlock::Tile(block) => (16, block.compressed_pixels_le.len()),
-            _ => return Err("deep data cannot be written".into()),
-        };
-        self.position += (part + place + 4 + bytes) as u64;
-        Ok(())
-    }
-
-    /// Writes the blocks, part by part, and the table.
-    fn finish(mut self, mains: &[Main], chunks: &[&(usize, Chunk)]) -> Result<(), Reason> {
-        let mut chunks = chunks.to_vec();
-        chunks.sort_by_key(|(_, chunk)| chunk.layer_index);
-        let of_part = |part: usize| chunks.partition_point(|(_, chunk)| chunk.layer_index < part);
-        for part in 0..self.headers.len() {
-            if let Some(main) = mains.iter().find(|main| main.part == part) {
-                main.write(&mut self)?;
-            }
-            for (index, chunk) in &chunks[of_part(part)..of_part(part + 1)] {
-                self.put(*index, chunk)?;
-            }
-        }
-        self.writer.seek(SeekFrom::Start(self.table.0))?;
-        for offset in self.table.1.iter().flatten() {
-            self.writer.write_all(&offset.to_le_bytes())?;
-        }
-        self.writer.seek(SeekFrom::Start(self.position))?;
-        Ok(())
-    }
 }

@@ -60,6 +60,7 @@ pub(super) fn read(mut reader: impl BufRead + Seek, options: &ReadOptions) -> Re
         notes,
         depth: Depth::Float,
         primaries: header.primaries.filter(|_| !header.xyz).and_then(Primaries::other_than_rec709),
+        knows_primaries: header.primaries.is_some() || header.xyz,
         pixel_aspect: header.pixel_aspect(),
         space: xyz.map(|_| "CIE XYZ".to_owned()),
         luminance: Some(header.luminance()),
@@ -85,7 +86,7 @@ fn check_length(reader: &mut impl Seek, lines: u32, length: u32) -> Result<(), R
 pub(super) fn write(mut writer: impl Write, photo: &Photo) -> Result<(), Reason> {
     let (width, height) = (photo.width() as usize, photo.height() as usize);
     // Only readers of Radiance pictures that name primaries are sure to look for them.
-    let own = photo.source.primaries.filter(|_| photo.source.radiance.is_some());
+    let own = photo.source.primaries.filter(|_| photo.source.radiance.is_some() || photo.source.keeps_space);
     let gamut = if own.is_some() { None } else { photo.to_rec709() };
     let mut samples = zeroed::<[f32; 3]>(width * height)?;
     samples.par_chunks_exact_mut(width).enumerate().for_each(|(y, row)| {

@@ -49,7 +49,7 @@ pub(super) fn read(reader: impl Read + Seek, options: &ReadOptions) -> Result<Ph
     let mut file = File::open(reader)?;
     let mut page = page::choose(&mut file)?;
     let layout = Layout::of(&mut file, &page.directory)?;
-    let meaning = Meaning::of(&mut file, &page.directory, &layout, *options)?;
+    let meaning = Meaning::of(&mut file, &page.directory, &layout, options.clone())?;
     let camera = camera(&mut file, &page.directory);
     let tables = match layout.compression {
         Compression::Jpeg => file.raw(&page.directory, tag::JPEG_TABLES)?,

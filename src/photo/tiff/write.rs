@@ -51,7 +51,7 @@ fn floats(photo: &Photo, alpha: bool) -> Result<(usize, Vec<f32>), Reason> {
     let colours = if display::is_grey(photo) { 1 } else { 3 };
     let channels = colours + usize::from(alpha);
     let row = photo.width() as usize * channels;
-    let gamut = photo.to_rec709();
+    let gamut = photo.to_file();
     let mut samples = zeroed::<f32>(row * photo.height() as usize)?;
     samples.par_chunks_exact_mut(row).enumerate().for_each(|(y, row)| {
         for (out, &pixel) in row.chunks_exact_mut(channels).zip(photo.picture_row(y as u32).iter()) {
