@@ -12,6 +12,7 @@
 
 mod survey;
 
+use rayon::prelude::*;
 use serde::Serialize;
 
 use super::clip::{Clip, common_area, common_middle, that_bite};
@@ -113,7 +114,7 @@ impl System {
         if let Some(least) = options.four_bounces {
             let strong = |ghost: &GhostPath| ghost.share.into_iter().any(|share| share >= least);
             let fours: Vec<GhostPath> =
-                survey.fours(least).iter().map(|four| survey.ghost(four)).collect::<Result<_>>()?;
+                survey.fours(least).par_iter().map(|four| survey.ghost(four)).collect::<Result<_>>()?;
             ghosts.extend(fours.into_iter().filter(strong));
         }
         // A focused ghost is no smaller than its diffraction.

@@ -140,7 +140,7 @@ fn show(args: &Args, name: &Path) -> Result<Report> {
         None if args.json => usize::MAX,
         None => SHOWN,
     };
-    let mut report = Report::new(lens.prescription(), &system, ghosts, most);
+    let mut report = Report::new(&lens, &system, most);
     if let Some(count) = args.exact {
         let traced = exact::exact(&system, ghosts, most, Rays { count, angle: args.angle })?;
         for (row, exact) in report.ghosts.iter_mut().zip(traced) {

@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use super::exact::Exact;
-use crate::optics::{Coating, FirstOrder, GhostPath, LINE_D, LensGhosts, Prescription, Pupil, Surface, System};
+use crate::optics::{Coating, FirstOrder, GhostPath, LINE_D, Prescription, Pupil, Surface, System};
+use crate::scene::Optical;
 
 /// A lens, how it is set, and its ghosts. Colours are red, green and blue of linear Rec. 709.
 #[derive(Debug, Serialize)]
@@ -45,6 +46,17 @@ pub(super) struct Report {
     /// How many ghosts there are.
     pub ghosts_in_all: usize,
     /// The part of a light's own image on the axis that all its ghosts have together.
+    pub share: [f64; 3],
+    /// Ghosts of four reflections, as pictures have them.
+    pub four_reflections: FoursRow,
+}
+
+/// Ghosts of four reflections.
+#[derive(Debug, Serialize)]
+pub(super) struct FoursRow {
+    /// How many Gaussians stand for all of them.
+    pub gaussians: usize,
+    /// The part of a light's own image on the axis that they have beside the others.
     pub share: [f64; 3],
 }
 
@@ -99,9 +111,15 @@ pub(super) struct GhostRow {
     pub exact: Option<Exact>,
 }
 
+/// Of all ghosts together.
+fn share(ghosts: &[GhostPath]) -> [f64; 3] {
+    [0, 1, 2].map(|colour| ghosts.iter().map(|ghost| ghost.share[colour]).sum())
+}
+
 impl Report {
     /// All of a lens but for its exact rays, with `most` of its ghosts.
-    pub fn new(lens: &Prescription, system: &System, ghosts: &LensGhosts, most: usize) -> Self {
+    pub fn new(optical: &Optical, system: &System, most: usize) -> Self {
+        let (lens, ghosts, fours) = (optical.prescription(), optical.ghosts(), optical.fours());
         let first = system.first_order();
         let FirstOrder { focal_length, back_focus, sensor_distance, half_field, .. } = *first;
         let corner = half_field.to_radians().tan();
@@ -127,7 +145,8 @@ impl Report {
             wavelengths_nm: ghosts.wavelengths,
             ghosts: ghosts.ghosts.iter().take(most).map(|ghost| GhostRow::new(ghost, corner)).collect(),
             ghosts_in_all: ghosts.ghosts.len(),
-            share: std::array::from_fn(|c| ghosts.ghosts.iter().map(|ghost| ghost.share[c]).sum()),
+            share: share(&ghosts.ghosts),
+            four_reflections: FoursRow { gaussians: fours.len(), share: share(fours) },
         }
     }
 }

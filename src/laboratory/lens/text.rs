@@ -123,6 +123,15 @@ fn sum(report: &Report) -> String {
         report.ghosts_in_all,
         percent(whole)
     );
+    let fours = &report.four_reflections;
+    if fours.gaussians > 0 {
+        let _ = write!(
+            text,
+            "\nLight that is reflected four times has {} % more, in pictures as {} Gaussians.",
+            percent(luminance(fours.share)),
+            fours.gaussians
+        );
+    }
     let more = report.ghosts_in_all - report.ghosts.len();
     if more > 0 {
         // What rounding leaves of a difference of sums is not below 0.

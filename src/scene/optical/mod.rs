@@ -1,5 +1,6 @@
 //! A lens that is known by its surfaces, set as a photographer sets it, and the table of ghosts that it makes on a picture.
 
+mod fours;
 mod rimmed;
 mod rows;
 
@@ -15,7 +16,7 @@ use super::lens::{Lens, LensVeil};
 use super::veil::VeilSection;
 use super::{Ghost, LensGhost, Light, lenses, presets};
 use crate::frame::Frame;
-use crate::optics::{Coating, GhostOptions, LensFormat, LensGhosts, Prescription, Setup, System};
+use crate::optics::{Coating, GhostOptions, GhostPath, LensFormat, LensGhosts, Prescription, Setup, System};
 use crate::psf::{Name, Parameters};
 use crate::{Error, Result};
 
@@ -82,7 +83,10 @@ impl PartialEq for Optical {
 #[derive(Debug, PartialEq)]
 struct Made {
     prescription: Prescription,
+    /// Of two reflections.
     ghosts: LensGhosts,
+    /// Of four, those that look alike as one.
+    fours: Vec<GhostPath>,
     opening: rows::Opening,
     veil: Option<LensVeil>,
     /// The name for people.
@@ -153,7 +157,10 @@ impl Optical {
         let prescription = section.prescription()?;
         let setup = section.setup();
         let system = System::new(&prescription, &setup)?;
-        let ghosts = system.ghosts(&GhostOptions::default())?;
+        let all = system.ghosts(&GhostOptions { four_bounces: Some(fours::LEAST), ..GhostOptions::default() })?;
+        let (pairs, fours) = all.ghosts.into_iter().partition(|ghost| ghost.reflections.len() == 2);
+        let ghosts = LensGhosts { ghosts: pairs, ..all };
+        let half = 0.5 * setup.sensor[0].hypot(setup.sensor[1]);
         let name = match (&section.lens, &section.file) {
             (Some(name), _) => name.clone(),
             (None, file) => {
@@ -168,6 +175,7 @@ impl Optical {
             f_number: system.first_order().f_number,
             widest: system.first_order().widest_f_number,
             ghosts,
+            fours: fours::gathered(fours, half),
             name,
         };
         let [width, height] = setup.sensor;
@@ -175,7 +183,7 @@ impl Optical {
     }
 
     fn fit(section: OpticsSection, made: Arc<Made>, millimetres: f64) -> Self {
-        let rows = rows::rows(&made.ghosts, &made.opening, millimetres);
+        let rows = rows::rows(&made.ghosts.ghosts, &made.fours, &made.opening, millimetres);
         let paths = rows.iter().map(|row| row.ghost).collect();
         let lens = Lens {
             name: made.name.clone(),
@@ -210,8 +218,8 @@ impl Optical {
 
     /// The rows of the table, each as it depends on where light is.
     pub(crate) fn rimmed(&self) -> impl Iterator<Item = Rimmed<'_>> {
-        let (ghosts, (tangent, _)) = (&self.made.ghosts.ghosts, self.direction(DVec2::X));
-        let of = move |(row, &path): (_, &usize)| Rimmed { row, path, ghost: &ghosts[path], tangent };
+        let (tangent, _) = self.direction(DVec2::X);
+        let of = move |(row, &path): (_, &usize)| Rimmed { row, path, ghost: self.path(path), tangent };
         self.lens.ghosts.iter().zip(&*self.paths).map(of)
     }
 
@@ -230,11 +238,17 @@ impl Optical {
         shining.par_iter().flat_map_iter(of).collect()
     }
 
+    /// What a row is of, by its number: of two reflections, then of four.
+    fn path(&self, number: usize) -> &GhostPath {
+        let pairs = &self.made.ghosts.ghosts;
+        pairs.get(number).unwrap_or_else(|| &self.made.fours[number - pairs.len()])
+    }
+
     /// The ghosts of a light, whole, each about the middle of what rims leave and with the light of that.
     fn dimmed(&self, light: &Light, axis: DVec2) -> Vec<Ghost> {
         let (tangent, towards) = self.direction(light.position - axis);
         let of = move |(row, path): (&LensGhost, &usize)| {
-            let path = &self.made.ghosts.ghosts[*path];
+            let path = self.path(*path);
             let left = path.vignetting(tangent).clamp(0.0, 1.0);
             let ghost = row.of(light, axis);
             let center = ghost.center + path.shift(tangent) / self.millimetres * towards;
@@ -273,9 +287,14 @@ impl Optical {
         &self.made.prescription
     }
 
-    /// Its ghosts, in millimetres on the sensor.
+    /// Its ghosts of two reflections, in millimetres on the sensor.
     pub fn ghosts(&self) -> &LensGhosts {
         &self.made.ghosts
+    }
+
+    /// Those of four, where they have any light to speak of: many that look alike as one.
+    pub fn fours(&self) -> &[GhostPath] {
+        &self.made.fours
     }
 }
 

@@ -11,7 +11,7 @@ use std::sync::{Mutex, PoisonError};
 
 use glam::DVec2;
 
-use crate::optics::{Clip, FirstOrder, GhostPath, Iris as Blades, LensGhosts};
+use crate::optics::{Clip, FirstOrder, GhostPath, Iris as Blades};
 use crate::scene::LensGhost;
 use crate::series::{Bell, Cut, Iris};
 
@@ -102,10 +102,28 @@ pub(super) struct Row {
     pub lens: LensGhost,
 }
 
-/// The rows of all ghosts that have any light, where a unit of lengths is so many mm on the sensor.
-pub(super) fn rows(table: &LensGhosts, opening: &Opening, unit: f64) -> Vec<Row> {
+/// The rows of all ghosts that have any light, those of two reflections and then the faint ones of four, where a unit of lengths is so many
+/// mm on the sensor.
+pub(super) fn rows(pairs: &[GhostPath], fours: &[GhostPath], opening: &Opening, unit: f64) -> Vec<Row> {
     let of = |(number, ghost)| of_ghost(ghost, opening, unit).into_iter().map(move |lens| Row { ghost: number, lens });
-    table.ghosts.iter().enumerate().flat_map(of).collect()
+    let faint = |(number, ghost)| matched(ghost, unit).map(|lens| Row { ghost: pairs.len() + number, lens });
+    pairs.iter().enumerate().flat_map(of).chain(fours.iter().enumerate().filter_map(faint)).collect()
+}
+
+/// The Gaussian of a ghost's variance, for all colours: a disc has a quarter of its radius squared along each axis.
+fn matched(ghost: &GhostPath, unit: f64) -> Option<LensGhost> {
+    let largest = ghost.share.into_iter().fold(0.0, f64::max);
+    let total: f64 = ghost.share.iter().sum();
+    let mean =
+        |values: [f64; 3]| values.iter().zip(ghost.share).map(|(value, share)| value * share).sum::<f64>() / total;
+    let (along, size) = (mean(ghost.magnification), 0.5 * (mean(ghost.radius_mm) / unit).max(SMALLEST));
+    (largest > 0.0 && along.is_finite() && size.is_finite()).then(|| LensGhost {
+        bell: Bell::Gaussian,
+        along,
+        size: DVec2::splat(size),
+        tint: ghost.share.map(|share| share / largest),
+        share: largest,
+    })
 }
 
 /// The row of a ghost of a light on the axis, for a light at a tangent of its angle in the direction of a unit vector: with what rims

@@ -118,6 +118,13 @@ impl<'a> Tracing<'a> {
     }
 }
 
+impl ByRays {
+    /// What the closed form makes of the same ghosts, of luminance.
+    pub fn closed(&self) -> f64 {
+        self.paths.iter().map(|path| path.closed).sum()
+    }
+}
+
 /// The radiance of a scene whose direct image is even: light aslant illuminates a plane by the fourth power of its cosine.
 fn even(tangent: DVec2) -> f64 {
     (1.0 + tangent.length_squared()).powi(2)

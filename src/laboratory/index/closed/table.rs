@@ -39,7 +39,7 @@ pub fn print(closed: &[Closed], diameters: &[f64], out: &mut dyn Write) -> io::R
 pub fn rays(closed: &[Closed], out: &mut dyn Write) -> io::Result<()> {
     let mut table = Table::new();
     table.load_style(presets::NOTHING);
-    table.set_header(["lens", "off axis", "spot", "ghosts, closed form, %", "ghosts, by rays, %"]);
+    table.set_header(["lens", "off axis", "spot", "closed form, %", "by rays, %"]);
     for closed in closed {
         let Some(rays) = &closed.rays else { continue };
         let [mean, interval] = rays.luminance.map(|value| 100.0 * value);
@@ -47,7 +47,7 @@ pub fn rays(closed: &[Closed], out: &mut dyn Write) -> io::Result<()> {
             closed.f_number.map_or("–".to_owned(), |number| format!("f/{number:.1}")),
             format!("{:.1}°", closed.off_axis_degrees),
             format!("{}°", closed.diameter_degrees),
-            format!("{:.4}", 100.0 * luminance(closed.ghosts)),
+            format!("{:.4}", 100.0 * rays.closed()),
             format!("{mean:.4} ± {interval:.4}"),
         ]);
     }
@@ -56,5 +56,8 @@ pub fn rays(closed: &[Closed], out: &mut dyn Write) -> io::Result<()> {
     }
     table.column_iter_mut().skip(1).for_each(|column| column.set_cell_alignment(CellAlignment::Right));
     writeln!(out, "\n{}", table.trim_fmt())?;
-    writeln!(out, "Of the index what two reflections make, by exact rays back from the spot's centre, within 99 %.")
+    writeln!(
+        out,
+        "Of the index what ghosts of two reflections make, in closed form and by exact rays back from the spot's centre, within 99 %."
+    )
 }

