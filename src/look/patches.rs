@@ -214,6 +214,7 @@ mod tests {
     use super::*;
     use crate::chance::Chance;
     use crate::look::{Look, LookLens};
+    use crate::photo::Photo;
     use crate::problem::Images;
     use crate::reference::direct_at;
     use crate::scene::Light;
@@ -253,7 +254,7 @@ mod tests {
     fn patches_have_the_light_that_rims_leave_of_every_pixel() {
         let (look, raster) = photo([45, 30]);
         let look = look.fitted(&raster.frame());
-        let images = look.images(|| raster.clone()).unwrap();
+        let images = look.images(&Photo::new(1, 1, vec![[0.0; 4]]), || raster.clone()).unwrap();
         let rims = images.rims().unwrap();
         assert!(rims.cut > 20 && rims.images > 2 * rims.cut && rims.images <= rims.cut * (MOST_EACH + 1), "{rims:?}");
         let light: f64 = raster.flux().iter().sum();

@@ -34,7 +34,7 @@ use crate::options::ReadArgs;
 use crate::options::SceneArgs;
 use crate::options::VeilArgs;
 use crate::options::numbers::range;
-use crate::{Error, Result, limits, target};
+use crate::{Error, target};
 
 use look::LookArgs;
 use shot::ShotArgs;

@@ -177,7 +177,7 @@ pub fn of(args: &Args, inputs: Inputs, overwrites: bool) -> Result<Work> {
 fn holds_layers(args: &Args, output: Option<&Path>) -> Result<()> {
     let Some(path) = output.filter(|_| args.output_options.layers) else { return Ok(()) };
     // No other format knows half floats.
-    if photo::holds(path, Depth::Half) {
+    if photo::holds(path, args.output_options.encoding.format(), Depth::Half) {
         return Ok(());
     }
     Err(Error::Usage(format!("--layers: {} is no .exr, and other formats hold no layers", path.display())))

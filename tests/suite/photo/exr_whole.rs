@@ -10,7 +10,7 @@ use super::Folder;
 use super::exr::{ACESCG, ALL, Blocks, TILES, content, header, put, with_levels};
 
 const AGAIN: WriteOptions =
-    WriteOptions { depth: None, exposure: 0.0, tone_map: None, primaries: None, overwrite: true };
+    WriteOptions { format: None, depth: None, exposure: 0.0, tone_map: None, primaries: None, overwrite: true };
 
 /// Every compression that loses something.
 const LOSSY: [Compression; 5] =
