@@ -118,9 +118,11 @@ impl<W: Write + Seek> Container<W> {
     }
 }
 
-/// Writes a header; the crate calls deep parts flat.
+/// Writes a header, its attributes by their names, as OpenEXR does: the crate keeps them in no order, and calls deep parts flat.
 fn write_header(writer: &mut impl Write, header: &Header) -> Result<(), Reason> {
-    for (name, value) in header.all_named_attributes() {
+    let mut attributes: Vec<_> = header.all_named_attributes().collect();
+    attributes.sort_by(|(one, _), (other, _)| one.cmp(other));
+    for (name, value) in attributes {
         let deep = match header.blocks {
             BlockDescription::ScanLines => BlockType::DeepScanLine,
             BlockDescription::Tiles(_) => BlockType::DeepTile,

@@ -27,10 +27,10 @@ fn lens(size: f64, tint: [f64; 3]) -> String {
 impl Workplace {
     /// The bytes of the picture that these options give of the photo.
     fn applied(&self, options: &[&str]) -> Vec<u8> {
-        let mut args = vec!["apply", "in.exr", "-o", "out.exr", "--force", "--no-calibration"];
+        let mut args = vec!["apply", "in.exr", "-o", "out.pfm", "--force", "--no-calibration"];
         args.extend(options);
         self.vglare(&args).succeeded();
-        std::fs::read(self.path("out.exr")).expect("the picture")
+        std::fs::read(self.path("out.pfm")).expect("the picture")
     }
 }
 
@@ -80,7 +80,7 @@ fn a_look_gives_the_same_bytes_without_a_command_line() {
         let look = Look::from_scene(read_scene(&place.text("look.toml", text)).unwrap()).unwrap();
         let found = Found::new(&look, photo::read(&photo).unwrap(), Stages::default()).unwrap();
         let done = found.compute(Some(&mut computer), Wanted::default(), &Unwatched).unwrap();
-        let path = place.path("job.exr");
+        let path = place.path("job.pfm");
         photo::write(&path, &done.picture.unwrap(), &WriteOptions { overwrite: true, ..WriteOptions::default() })
             .unwrap();
         assert!(std::fs::read(path).unwrap() == place.applied(&["--scene", "look.toml"]), "{text}");

@@ -42,11 +42,11 @@ fn a_lens_has_its_veil_unless_somebody_says_otherwise() {
     let place = Workplace::new();
     place.photo("in.exr");
     let run = |options: &str| {
-        let line = ["apply", "in.exr", "-o", "out.exr", "--report", "report.json", "--force", "--no-calibration"];
+        let line = ["apply", "in.exr", "-o", "out.pfm", "--report", "report.json", "--force", "--no-calibration"];
         place.vglare(&line.into_iter().chain(options.split_whitespace()).collect::<Vec<_>>()).succeeded();
         let report = place.read_json("report.json");
         let ghosts = report["scene"]["ghosts"].as_u64().unwrap();
-        (report["veil"]["psf"].as_str().map(str::to_owned), ghosts > 0, std::fs::read(place.path("out.exr")).unwrap())
+        (report["veil"]["psf"].as_str().map(str::to_owned), ghosts > 0, std::fs::read(place.path("out.pfm")).unwrap())
     };
     place.text("eye.toml", "version = 2\npreset = \"eye\"\n");
     place.text("first.toml", "preset = \"eye\"\n");
@@ -120,13 +120,13 @@ fn a_veil_that_replaces_ghosts_does_so_wherever_there_is_one() {
     place.text("own.toml", "version = 2\n[veil]\npsf = \"gaussian\"\nwidth = 0.1\nscatter = 0.1\n");
     place.text("none.toml", "version = 2\n[veil]\npsf = \"none\"\n");
     let run = |options: &str| {
-        let line = ["apply", "in.exr", "-o", "out.exr", "--report", "report.json", "--force", "--no-calibration"];
+        let line = ["apply", "in.exr", "-o", "out.pfm", "--report", "report.json", "--force", "--no-calibration"];
         let line: Vec<_> = line.into_iter().chain(options.split_whitespace()).collect();
         let said = place.vglare(&line).succeeded().stdout();
         let report = place.read_json("report.json");
         let ghosts = report["scene"]["ghosts"].as_u64().unwrap();
         let veil = report["veil"]["psf"].as_str().unwrap_or_default().to_owned();
-        (veil, ghosts > 0, std::fs::read(place.path("out.exr")).unwrap(), said)
+        (veil, ghosts > 0, std::fs::read(place.path("out.pfm")).unwrap(), said)
     };
     for (options, veil, ghosts) in [
         ("--lens either.toml", "camera", false),

@@ -8,10 +8,10 @@ impl Workplace {
     /// The bytes of the glare that these options give of the photo, and the report.
     fn through(&self, options: &[&str]) -> (Vec<u8>, Value) {
         let mut args =
-            vec!["apply", "in.exr", "--glare", "glare.exr", "--report", "report.json", "--force", "--no-calibration"];
+            vec!["apply", "in.exr", "--glare", "glare.pfm", "--report", "report.json", "--force", "--no-calibration"];
         args.extend(options);
         self.vglare(&args).succeeded();
-        (std::fs::read(self.path("glare.exr")).expect("the glare"), self.read_json("report.json"))
+        (std::fs::read(self.path("glare.pfm")).expect("the glare"), self.read_json("report.json"))
     }
 }
 

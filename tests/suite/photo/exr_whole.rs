@@ -222,6 +222,22 @@ fn other_formats_are_written_in_a_space_that_is_asked_for() {
 }
 
 #[test]
+fn a_file_is_the_same_to_the_byte_however_often_it_is_written() {
+    let folder = Folder::new();
+    let path = folder.path("a.exr");
+    put(&path, vec![header(&ALL, Compression::ZIP16, BlockDescription::ScanLines)]);
+    let bytes = |number: usize| {
+        let mut photo = photo::read(&path).unwrap();
+        photo.source.made = Some(Made::new("strength = 1.0").into());
+        let to = folder.path(&format!("{number}.exr"));
+        photo::write(&to, &photo, &AGAIN).unwrap();
+        std::fs::read(to).unwrap()
+    };
+    let first = bytes(0);
+    assert!((1..8).all(|number| bytes(number) == first));
+}
+
+#[test]
 fn data_is_no_picture_unless_it_is_asked_for() {
     let folder = Folder::new();
     let path = folder.path("a.exr");
