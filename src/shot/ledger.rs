@@ -211,7 +211,14 @@ fn write(place: &Path, entry: &Entry) -> Result<()> {
     target::remember_text(place, &(line + "\n"))
 }
 
-fn hash_of(path: &Path) -> io::Result<String> {
+/// BLAKE3 of a regular file, 256 bits in hexadecimal digits.
+///
+/// # Errors
+/// Where it cannot be read, or is no file.
+pub(crate) fn hash_of(path: &Path) -> io::Result<String> {
+    if !path.is_file() {
+        return Err(io::ErrorKind::InvalidInput.into());
+    }
     Ok(blake3::Hasher::new().update_reader(File::open(path)?)?.finalize().to_hex().to_string())
 }
 

@@ -23,6 +23,7 @@ mod real_lens;
 mod recover;
 mod refusals;
 mod remove;
+mod report;
 mod rex;
 mod scarce;
 mod sequence;

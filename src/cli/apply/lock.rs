@@ -51,7 +51,7 @@ pub struct Locking {
 }
 
 impl Locking {
-    /// Locks a look for a sequence. A heap of photos that are no shot is not locked unless --lock says so.
+    /// Locks a look for a sequence. A heap of photos that are no shot is not locked unless --lock-from says so.
     ///
     /// # Errors
     /// [`Error::Usage`] for a frame that is not there; those of reading it, and of planning its glare.
@@ -100,7 +100,10 @@ fn frame(args: &Args, sequence: &Sequence) -> Result<Option<PathBuf>> {
         Some(Lock::Frame(number)) => {
             let inputs = Inputs::new(given, Some(&[number].into_iter().collect()))?;
             let none = || {
-                Error::Usage(format!("--lock {number}: {}", Error::MissingFrames { missing: inputs.missing.clone() }))
+                Error::Usage(format!(
+                    "--lock-from {number}: {}",
+                    Error::MissingFrames { missing: inputs.missing.clone() }
+                ))
             };
             inputs.photos.first().cloned().map(Some).ok_or_else(none)
         }

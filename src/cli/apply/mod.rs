@@ -49,7 +49,7 @@ pub use run::run;
 /// Several photos, as the frames of a shot, are done in one run, in which the next is read and the last written while one
 /// is computed. OUTPUT then is a folder, which is made if need be, or a pattern. Each photo has lights, a plan and a
 /// measured error of its own. Where photos are the frames of a shot, by a pattern or by names that differ in their numbers alone,
-/// the first chooses for all what would flicker if each chose: see --lock.
+/// the first chooses for all what would flicker if each chose: see --lock-from.
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {

@@ -1,6 +1,7 @@
 //! The report: what was computed, how, how exactly and how fast.
 
 use std::path::PathBuf;
+use std::time::SystemTime;
 
 use glam::DVec2;
 use serde::Serialize;
@@ -19,11 +20,34 @@ use crate::photo::BadKind;
 use crate::plan::Plan;
 use crate::problem::Rims;
 use crate::scene::{Goal, Light, OpticsSection, Recover, Recovery};
+use crate::shot;
+
+/// Which run a report is of.
+#[derive(Serialize)]
+pub struct Run {
+    /// Word by word.
+    command: Vec<String>,
+    /// When it was written, UTC, by RFC 3339.
+    date: String,
+}
+
+impl Run {
+    /// This one, now.
+    pub fn now() -> Self {
+        let words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
+        Self { command: words.collect(), date: humantime::format_rfc3339_seconds(SystemTime::now()).to_string() }
+    }
+}
 
 /// As JSON, one object.
 #[derive(Serialize)]
 pub struct Report<'a> {
     vglare: &'static str,
+    /// Of one photo alone; of several it stands beside them.
+    #[serde(flatten)]
+    run: Option<Run>,
+    /// What tells one look from another: sixteen digits, as OpenEXR's `vglare.look`.
+    look: String,
     input: PhotoReport,
     output: Option<String>,
     glare: Option<String>,
@@ -58,6 +82,8 @@ pub struct Report<'a> {
 struct PhotoReport {
     #[serde(flatten)]
     photo: PhotoTold,
+    /// BLAKE3 of the file, 256 bits in hexadecimal digits; none of what came by standard input.
+    blake3: Option<String>,
     bad_pixels: BadReport,
 }
 
@@ -164,6 +190,8 @@ impl<'a> Report<'a> {
         let computed = work.computed.as_ref();
         Self {
             vglare: env!("CARGO_PKG_VERSION"),
+            run: None,
+            look: work.look.made().look,
             input: photo_report(job),
             output: shown(&paths.output),
             glare: shown(&paths.glare),
@@ -190,6 +218,11 @@ impl<'a> Report<'a> {
             renderer: computed.map(|computed| &*computed.info),
         }
     }
+
+    /// The same, of a run that is of this photo alone.
+    pub fn alone(self) -> Self {
+        Self { run: Some(Run::now()), ..self }
+    }
 }
 
 fn cost_report(computed: &Computed, goal: Goal) -> CostReport<'_> {
@@ -205,6 +238,7 @@ fn photo_report(job: &Job<'_, Done<'_>>) -> PhotoReport {
     let bad = &job.work.bad;
     PhotoReport {
         photo: PhotoTold::new(&job.paths.input, &job.work.facts),
+        blake3: shot::ledger::hash_of(&job.paths.input).ok(),
         bad_pixels: BadReport {
             nan: bad.nan,
             infinite: bad.infinite,

@@ -88,7 +88,7 @@ impl Laying<'_> {
         progress.step(Step::Writing);
         let job = job.write()?;
         if let Some(path) = &args.output_options.report {
-            target::write_json(path, &Report::new(&job), args.overwrites())?;
+            target::write_json(path, &Report::new(&job).alone(), args.overwrites())?;
         }
         drop(progress);
         summary::print(&job)?;

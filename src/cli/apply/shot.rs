@@ -36,7 +36,7 @@ pub struct ShotArgs {
     ///
     /// `first` is the first frame that is there of the pattern, whichever are done, or the first photo; a number names
     /// another frame; with `none` each photo is taken by itself. What an option or a file says is as it says.
-    #[arg(long, value_name = "first|FRAME|none", allow_hyphen_values = true)]
+    #[arg(long = "lock-from", alias = "lock", value_name = "first|FRAME|none", allow_hyphen_values = true)]
     pub(super) lock: Option<Lock>,
 
     /// Where a photo cannot be done, or a frame is missing, go on with the others and fail at the end, instead of stopping there

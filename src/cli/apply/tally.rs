@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::Args;
 use super::outputs::Sequence;
+use super::report::Run;
 use super::sequence::Hears;
 use super::spool::Spool;
 use super::told::Told;
@@ -86,6 +87,8 @@ struct Failed {
 #[derive(Serialize)]
 struct SequenceReport<'a> {
     vglare: &'static str,
+    #[serde(flatten)]
+    run: Run,
     /// A report each.
     frames: Frames<'a>,
     failed: &'a [Failed],
@@ -244,6 +247,7 @@ impl<'a> Tally<'a> {
     fn report(&self, seconds: f64) -> SequenceReport<'_> {
         SequenceReport {
             vglare: env!("CARGO_PKG_VERSION"),
+            run: Run::now(),
             frames: self.reports.as_ref().map_or(Frames::None([]), Frames::Some),
             failed: &self.failed,
             summary: Summary {
