@@ -269,7 +269,8 @@ fn noisy(frame: i64) -> Photo {
     for row in 0..96 {
         for column in 0..144 {
             let (lamp, x, y) = (column / 24 + 6 * (row / 16), column % 24, row % 16);
-            let level = if (10..13).contains(&x) && (7..10).contains(&y) { 100_f32.powf(lamp as f32 / 35.0) } else { 0.2 };
+            let level =
+                if (10..13).contains(&x) && (7..10).contains(&y) { 100_f32.powf(lamp as f32 / 35.0) } else { 0.2 };
             // The sum of twelve has the variance 1.
             let normal = (0..12).map(|_| uniform()).sum::<f32>() - 6.0;
             let seen = (level + (0.002 * level).sqrt() * normal + 0.003 * normal).max(0.0);
@@ -328,14 +329,20 @@ fn what_each_frame_would_choose_one_chooses_for_all() {
     assert_eq!(thresholds(&["--threshold", "3"]), [3.0; 2]);
     // What is stretched.
     let stretched = |lock| {
-        let of = glare(&place, 1..=2, &["--sources", "lights", "--threshold", "10", "--normalize", "minmax", "--lock", lock]);
+        let of = glare(
+            &place,
+            1..=2,
+            &["--sources", "lights", "--threshold", "10", "--normalize", "minmax", "--lock", lock],
+        );
         [of[0][1], of[1][1]]
     };
     let [one, other] = stretched("none");
     assert!((one - 1.0).abs() < 0.01 && (other - 1.0).abs() < 0.01, "{one} {other}");
     let [one, other] = stretched("first");
     assert!((one - 1.0).abs() < 0.01 && other > 2.0, "{one} {other}");
-    place.vglare(&with(&["--sources", "lights", "--lock", "9", "--force"])).failed(2, &["--lock 9", "frame 9 of in/s.####.exr is missing"]);
+    place
+        .vglare(&with(&["--sources", "lights", "--lock", "9", "--force"]))
+        .failed(2, &["--lock 9", "frame 9 of in/s.####.exr is missing"]);
     place.vglare(&with(&["--lock", "last"])).failed(2, &["\"first\", \"none\" or a frame's number"]);
 }
 
@@ -406,7 +413,10 @@ fn a_process_that_is_killed_is_told_and_none_outlives_who_started_it() {
     parent.kill().unwrap();
     parent.wait().unwrap();
     let until = std::time::Instant::now() + std::time::Duration::from_secs(20);
-    while children.iter().any(|id| std::fs::read_to_string(format!("/proc/{id}/stat")).is_ok_and(|stat| !stat.contains(") Z "))) {
+    while children
+        .iter()
+        .any(|id| std::fs::read_to_string(format!("/proc/{id}/stat")).is_ok_and(|stat| !stat.contains(") Z ")))
+    {
         assert!(std::time::Instant::now() < until, "they end, too");
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
