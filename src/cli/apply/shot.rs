@@ -94,7 +94,9 @@ pub fn ledger(args: &Args, locked: &Locked) -> Result<Ledger> {
         verify: args.proof.verify,
         range: locked.range,
     };
-    Ledger::new(&settings, args.scene.files().into_iter().chain(args.veil.files().cloned()))
+    let files = args.scene.files().into_iter().chain(args.veil.files().cloned());
+    // A lens that comes with vglare is named where a file could be.
+    Ledger::new(&settings, files.filter(|path| path.is_file()))
 }
 
 /// The files that a photo becomes, as the ledger knows them.

@@ -37,7 +37,7 @@ impl Part {
     pub const ALL: Self = Self { index: 0, count: 1 };
 
     /// The photos of this part: neighbours go to different ones, so that all come to an end together.
-    pub fn of<'a>(self, photos: &'a [Paths]) -> impl Iterator<Item = &'a Paths> {
+    pub fn of(self, photos: &[Paths]) -> impl Iterator<Item = &Paths> {
         photos.iter().skip(self.index).step_by(self.count)
     }
 }
@@ -176,7 +176,8 @@ fn start(part: Part, send: Sender<Message>) -> Result<Child> {
     let said = child.stdout.take().expect("it is piped");
     let listen = move || {
         let lines = BufReader::new(said).lines().map_while(Result::ok);
-        lines.filter_map(|line| serde_json::from_str(&line).ok()).try_for_each(|message| send.send(message))
+        // Who no longer listens has closed the other end as well.
+        lines.filter_map(|line| serde_json::from_str(&line).ok()).for_each(|message| drop(send.send(message)));
     };
     thread::Builder::new().name("worker".into()).spawn(listen).map_err(Error::threads)?;
     Ok(child)

@@ -18,6 +18,7 @@ fn written(place: &Workplace) -> Vec<String> {
     let mut names: Vec<_> = std::fs::read_dir(place.path("out"))
         .expect("the folder")
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter(|name| name != ".vglare")
         .collect();
     names.sort();
     names
