@@ -1,7 +1,7 @@
 //! JPEG XL (ISO/IEC 18181), read by `jxl-oxide`.
 //!
-//! Of files that libjxl 0.11 wrote, lossless ones of 8 bit and of floats are read to the bit. Cut short and with bytes changed, 5000
-//! times, none made the decoder panic or take longer (November 2026); what a coding without checksums cannot tell, it does not.
+//! Lossless files of libjxl 0.11, of 8 bit and of floats, are read to the bit. Of some 4700 files that were cut short or had bytes changed none
+//! made the decoder panic, or take more than 0.05 s (December 2026); damage that a coding without checksums cannot tell, it does not.
 //!
 //! Integers are meant for displays, floats are scene-linear light once their curve is undone, as in TIFF. The colour space is that of
 //! the codestream, be it named or an ICC profile. Orientation is the codestream's, whatever Exif says; of an animation the
