@@ -117,11 +117,15 @@ fn encoding(image: &JxlImage, grey: bool, options: &ReadOptions, notes: &mut Vec
 /// What stands in the file's other boxes.
 fn beside(image: &JxlImage, turn: Orientation, photo: &mut Photo) {
     let mut metadata = Metadata::default();
-    if let Ok(AuxBoxData::Data(exif)) = image.aux_boxes().first_exif()
-        && let Some(raw) = exif.payload().get(exif.tiff_header_offset() as usize..)
-    {
-        photo.source.camera = Camera::of_raw_exif(raw, turn);
-        metadata.take_exif(raw, turn);
+    match image.aux_boxes().first_exif() {
+        Ok(AuxBoxData::Data(exif)) => {
+            let raw = exif.payload().get(exif.tiff_header_offset() as usize..).unwrap_or_default();
+            photo.source.camera = Camera::of_raw_exif(raw, turn);
+            metadata.take_exif(raw, turn);
+        }
+        Ok(_) => (),
+        // It does not say where it begins.
+        Err(_) => metadata.take_exif(&[], turn),
     }
     if let AuxBoxData::Data(xml) = image.aux_boxes().first_xml()
         && let Ok(packet) = std::str::from_utf8(xml)

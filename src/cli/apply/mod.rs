@@ -149,7 +149,7 @@ impl Args {
     /// Whether files that are there may be replaced. One of several processes does not look: another may have been quicker, and who
     /// started them has.
     fn overwrites(&self) -> bool {
-        self.force || self.sequence.resume || self.sequence.part.is_some()
+        self.force || self.sequence.resume || self.sequence.among.is_some()
     }
 
     /// Whether one of the files goes to standard output.

@@ -62,7 +62,7 @@ fn compute<'a>(
 /// That of the first photo that could not be done; with --keep-going [`crate::Error::Frames`] after the others; with
 /// --strict [`crate::Error::FramesMissed`].
 pub fn run(args: &Args, sequence: &Sequence) -> Result<()> {
-    match args.sequence.part {
+    match args.sequence.among {
         Some(_) => go_through(args, sequence, &mut Worker::new(args)),
         None if args.sequence.jobs > 1 => workers::run(args, sequence),
         None => {
@@ -129,7 +129,7 @@ fn go_through(args: &Args, sequence: &Sequence, heard: &mut impl Hears) -> Resul
 
 /// The photos that are to be done by this process; those that are done already are told.
 fn remaining<'a>(args: &Args, sequence: &'a Sequence, ledger: &Ledger, heard: &mut impl Hears) -> Vec<&'a Paths> {
-    let part = args.sequence.part.unwrap_or(Part::ALL);
+    let part = args.sequence.among.unwrap_or(Part::ALL);
     let mine: Vec<_> = part.of(&sequence.frames).collect();
     if !args.sequence.resume {
         return mine;

@@ -54,7 +54,7 @@ pub struct ShotArgs {
 
     /// The photos of this process, one of several of --jobs, which tells what becomes of them as JSON
     #[arg(long, value_name = "INDEX/COUNT", hide = true)]
-    pub(super) part: Option<Part>,
+    pub(super) among: Option<Part>,
 
     /// Panic in a step of one photo, to test that the others are done; see src/cli/apply/fault.rs
     #[arg(long, value_name = "STEP:PHOTO", hide = true)]

@@ -169,7 +169,7 @@ fn start(part: Part, send: Sender<Message>) -> Result<Child> {
     let mut words = std::env::args_os().skip(1);
     let threads = limits::cores().div_ceil(part.count).to_string();
     let mut command = Command::new(std::env::current_exe().map_err(Error::threads)?);
-    command.args(words.next()).arg(format!("--part={}/{}", part.index, part.count)).args(words);
+    command.args(words.next()).arg(format!("--among={}/{}", part.index, part.count)).args(words);
     // Its own and those of Mesa's software renderer.
     command.env("RAYON_NUM_THREADS", &threads).env("LP_NUM_THREADS", &threads);
     let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().map_err(Error::threads)?;

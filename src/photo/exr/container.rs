@@ -121,7 +121,7 @@ impl<W: Write + Seek> Container<W> {
 /// Writes a header, its attributes by their names, as OpenEXR does: the crate keeps them in no order, and calls deep parts flat.
 fn write_header(writer: &mut impl Write, header: &Header) -> Result<(), Reason> {
     let mut attributes: Vec<_> = header.all_named_attributes().collect();
-    attributes.sort_by(|(one, _), (other, _)| one.cmp(other));
+    attributes.sort_by_key(|(name, _)| *name);
     for (name, value) in attributes {
         let deep = match header.blocks {
             BlockDescription::ScanLines => BlockType::DeepScanLine,
