@@ -27,7 +27,7 @@ fn reports_of_all_kinds_hold_what_their_schema_says() {
     let one = ["night.exr", "-o", "out.exr"];
     let kinds: [&[&str]; 6] = [
         &["--veil", "cie", "--fov", "50", "--luminance", "100", "--each-pixel"],
-        &["--sources", "lights", "--lens", "double-gauss", "--evaluator", "series"],
+        &["--sources", "lights", "--lens", "double-gauss", "--evaluator", "grid"],
         &["--lens", "double-gauss", "--coating", "none", "--tolerance", "1e-2"],
         &["--strength", "0"],
         &["--sources", "lights", "--evaluator", "local", "--veil", "gaussian", "--width", "0.1", "--scatter", "0.1"],

@@ -78,7 +78,9 @@ fn without_strength_all_photos_stay_as_they_are() {
     let (place, names) = place(3);
     place.vglare(&apply(&names, &["-o", "out", "--strength", "0"])).succeeded();
     for name in &names {
-        assert!(bytes(&place.path(name)) == bytes(&place.path(&format!("out/{name}"))), "{name}");
+        // A file says besides how it was made.
+        let read = |path: &str| vglare::photo::read(&place.path(path)).unwrap().pixels;
+        assert!(read(name) == read(&format!("out/{name}")), "{name}");
     }
 }
 

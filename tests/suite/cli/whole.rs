@@ -17,10 +17,10 @@ fn a_file_and_an_option_take_the_whole_photo_and_the_report_says_so() {
     place.text("look.toml", &format!("{LENS}[look]\nunit = \"short-side\"\nsources = \"photo\"\n"));
     let apply = |options: &[&str]| {
         let mut args =
-            vec!["apply", "in.exr", "-o", "out.exr", "--force", "--no-calibration", "--report", "report.json"];
+            vec!["apply", "in.exr", "-o", "out.pfm", "--force", "--no-calibration", "--report", "report.json"];
         args.extend(options);
         let said = place.vglare(&args).succeeded().stdout();
-        (std::fs::read(place.path("out.exr")).expect("the picture"), place.read_json("report.json"), said)
+        (std::fs::read(place.path("out.pfm")).expect("the picture"), place.read_json("report.json"), said)
     };
     let (by_option, report, said) = apply(&["--lens", "lens.toml", "--sources", "photo"]);
     let (by_file, ..) = apply(&["--scene", "look.toml"]);
