@@ -191,6 +191,15 @@ impl Ledger {
     }
 }
 
+/// Forgets a frame, if anything is known of it; and the folder, where nothing else is in it.
+pub fn forget(outputs: &[&Path]) {
+    let Some(place) = outputs.first().and_then(|first| place(first)) else { return };
+    // What cannot be removed is of no harm.
+    if fs::remove_file(&place).is_ok() {
+        let _ = fs::remove_dir(target::folder(&place));
+    }
+}
+
 /// Whether an output takes the place of the input.
 fn replaces(input: &Path, outputs: &[&Path]) -> bool {
     let input = Identity::of(input);

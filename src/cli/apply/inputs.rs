@@ -45,6 +45,11 @@ impl Inputs {
         Ok(inputs)
     }
 
+    /// Whether one of these names frames by a pattern.
+    pub fn are_by_pattern(given: &[PathBuf]) -> bool {
+        given.iter().any(|given| pattern(given).is_some())
+    }
+
     /// The frames of one pattern, be they there or not: those of `frames`, or else all that are there.
     ///
     /// # Errors

@@ -22,7 +22,6 @@ mod workers;
 
 use std::path::PathBuf;
 
-use crate::Result;
 use crate::certificate::Verify;
 use crate::choices::Mix;
 use crate::cli::encoding::EncodingArgs;
@@ -34,8 +33,9 @@ use crate::options::ReadArgs;
 use crate::options::SceneArgs;
 use crate::options::VeilArgs;
 use crate::options::numbers::range;
-use crate::{Error, target};
+use crate::{Error, Result, target};
 
+use inputs::Inputs;
 use look::LookArgs;
 use shot::ShotArgs;
 
@@ -150,6 +150,12 @@ impl Args {
     /// started them has.
     fn overwrites(&self) -> bool {
         self.force || self.sequence.resume || self.sequence.among.is_some()
+    }
+
+    /// Whether what is known of frames that are done stays when all of them are: of a shot that is named as one, or goes on. Of photos that
+    /// are named one by one nobody expects more than their pictures.
+    fn keeps_ledger(&self) -> bool {
+        self.sequence.resume || self.sequence.frames.is_some() || Inputs::are_by_pattern(&self.inputs)
     }
 
     /// Whether one of the files goes to standard output.

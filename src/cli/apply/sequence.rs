@@ -15,7 +15,7 @@ use super::told::Told;
 use super::workers::{self, Part, Worker};
 use super::{pipeline, shot};
 use crate::job::{Computer, Done, Found};
-use crate::shot::ledger::Entry;
+use crate::shot::ledger::{self, Entry};
 use crate::shot::{Ledger, Stamp};
 use crate::terminal::progress::Progress;
 use crate::{Error, Result, panics};
@@ -63,16 +63,20 @@ fn compute<'a>(
 /// --strict [`crate::Error::FramesMissed`].
 pub fn run(args: &Args, sequence: &Sequence) -> Result<()> {
     match args.sequence.among {
-        Some(_) => go_through(args, sequence, &mut Worker::new(args)),
-        None if args.sequence.jobs > 1 => workers::run(args, sequence),
+        Some(_) => return go_through(args, sequence, &mut Worker::new(args)),
+        None if args.sequence.jobs > 1 => workers::run(args, sequence)?,
         None => {
             let progress = Progress::start(args.quiet);
             let mut tally = Tally::new(args, sequence, &progress);
             tally.lack(&sequence.missing);
             go_through(args, sequence, &mut tally)?;
-            tally.finish()
+            tally.finish()?;
         }
     }
+    if !args.keeps_ledger() {
+        sequence.frames.iter().for_each(|paths| ledger::forget(&shot::outputs(paths)));
+    }
+    Ok(())
 }
 
 /// Who hears what becomes of photos.

@@ -425,3 +425,31 @@ fn a_process_that_is_killed_is_told_and_none_outlives_who_started_it() {
         vglare::photo::read(&shot.path(&format!("out/{name}"))).unwrap_or_else(|error| panic!("{error}"));
     }
 }
+
+/// Of photos that are named one by one only pictures are left once all are done; what is known of them stays where some are not, or where
+/// `--resume` is asked for.
+#[test]
+fn photos_that_are_named_one_by_one_leave_pictures_alone() {
+    let place = place(&[1, 2]);
+    let list = |more: &[&str]| {
+        let list = ["apply", "in/s.0001.exr", "in/s.0002.exr", "-o", "out/", "--strength=2"];
+        place.vglare(&[&list[..], more].concat())
+    };
+    let known = || place.path("out/.vglare").exists();
+    list(&[]).succeeded();
+    assert!(!known() && names(&place) == ["s.0001.exr", "s.0002.exr"]);
+    list(&["--resume"]).succeeded();
+    assert!(known());
+    let before = pictures(&place);
+    list(&["--resume"]).succeeded();
+    assert_eq!(rewritten(&place, &before), Vec::<String>::new());
+    list(&["--force"]).succeeded();
+    assert!(!known());
+    let whole = std::fs::read(place.path("in/s.0002.exr")).unwrap();
+    std::fs::write(place.path("in/s.0002.exr"), &whole[..whole.len() / 2]).unwrap();
+    assert_ne!(list(&["--force", "--keep-going"]).code(), Some(0));
+    std::fs::write(place.path("in/s.0002.exr"), &whole).unwrap();
+    let before = pictures(&place);
+    list(&["--resume"]).succeeded();
+    assert_eq!(rewritten(&place, &before), ["s.0002.exr"]);
+}
