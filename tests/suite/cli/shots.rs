@@ -32,9 +32,11 @@ fn with<'a>(more: &[&'a str]) -> Vec<&'a str> {
 fn pictures(place: &Workplace) -> Vec<(String, SystemTime)> {
     let Ok(entries) = std::fs::read_dir(place.path("out")) else { return Vec::new() };
     let entries = entries.map(Result::unwrap).filter(|entry| entry.file_name() != ".vglare");
-    let mut pictures: Vec<_> = entries
-        .map(|entry| (entry.file_name().into_string().unwrap(), entry.metadata().unwrap().modified().unwrap()))
-        .collect();
+    // While a run goes on, one may be gone under its temporary name before it is looked at.
+    let looked_at = |entry: std::fs::DirEntry| {
+        Some((entry.file_name().into_string().unwrap(), entry.metadata().ok()?.modified().unwrap()))
+    };
+    let mut pictures: Vec<_> = entries.filter_map(looked_at).collect();
     pictures.sort();
     pictures
 }
